@@ -1,0 +1,370 @@
+"""include/frm.h as ctypes: its constants, enums, structs and functions, in the header's order.
+
+Names follow one rule, which tests/python/test_parity.py enforces: an enum or struct ``frm_some_thing`` is
+``SomeThing`` here, a constant ``FRM_NAME`` is ``NAME``, and a function keeps its name as a key of
+`FUNCTIONS`. Handles are plain integers. What things mean, and their units, is said once: in the header.
+"""
+from __future__ import annotations
+
+from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint32,
+                    c_uint64, c_void_p, sizeof)
+from enum import IntEnum
+
+VERSION_MAJOR = 0
+VERSION_MINOR = 1
+VERSION_PATCH = 0
+
+
+class Struct(Structure):
+    """A struct of the header; `repr` shows the fields, `==` compares them."""
+
+    @classmethod
+    def sized(cls):
+        """An empty one whose struct_size is set, for the library to fill."""
+        return cls(struct_size=sizeof(cls))
+
+    @classmethod
+    def field_names(cls) -> list[str]:
+        """The fields that say something: all but struct_size and padding."""
+        return [name for name, *_ in cls._fields_ if name not in ("struct_size", "reserved")]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{n}={getattr(self, n)!r}' for n in self.field_names())})"
+
+    def __eq__(self, other) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(getattr(self, n) == getattr(other, n) for n in self.field_names())
+
+    __hash__ = None
+
+
+class Vector(Struct):
+    """A struct of equal numbers: unpacks, indexes and has a length, as a tuple does."""
+
+    def __iter__(self):
+        return (getattr(self, name) for name, _ in self._fields_)
+
+    def __len__(self) -> int:
+        return len(self._fields_)
+
+    def __getitem__(self, index):
+        return tuple(self)[index]
+
+
+def convert(kind, value):
+    """`value` as the ctypes type `kind`: structs from any sequence of their fields, however deeply nested."""
+    if not issubclass(kind, Structure) or isinstance(value, kind):
+        return value
+    fields = [field for field in kind._fields_ if field[0] not in ("struct_size", "reserved")]
+    values = tuple(value)
+    if len(values) != len(fields):
+        names = ", ".join(name for name, *_ in fields)
+        raise TypeError(f"{kind.__name__} takes {len(fields)} values ({names}), not {len(values)}")
+    made = kind.sized() if hasattr(kind, "struct_size") else kind()
+    for (name, field_kind), item in zip(fields, values):
+        setattr(made, name, convert(field_kind, item))
+    return made
+
+
+# ---- Status ------------------------------------------------------------------------------------------------
+
+frm_status = c_int32
+
+
+class Status(IntEnum):
+    OK = 0
+    ERROR_ARGUMENT = -1
+    ERROR_HANDLE = -2
+    ERROR_STATE = -3
+    ERROR_VERSION = -4
+    ERROR_MEMORY = -5
+    ERROR_FILE = -6
+    ERROR_CORRUPT = -7
+    ERROR_CAPACITY = -8
+    ERROR_LIMIT = -9
+    ERROR_DEVICE = -10
+    ERROR_END = -11
+    ERROR_INTERNAL = -12
+
+
+# ---- Handles and plain values ------------------------------------------------------------------------------
+
+frm_context = frm_map = frm_world = frm_water = frm_body = frm_device = frm_recorder = frm_replay = c_uint64
+
+
+class Vec3(Vector):
+    _fields_ = [("x", c_float), ("y", c_float), ("z", c_float)]
+
+
+class Position(Vector):
+    _fields_ = [("x", c_double), ("y", c_double), ("z", c_double)]
+
+
+class Quaternion(Vector):
+    _fields_ = [("x", c_float), ("y", c_float), ("z", c_float), ("w", c_float)]
+
+
+class Pose(Struct):
+    _fields_ = [("position", Position), ("rotation", Quaternion)]
+
+
+class Twist(Struct):
+    _fields_ = [("linear", Vec3), ("angular", Vec3)]
+
+
+class Wrench(Struct):
+    _fields_ = [("force", Vec3), ("torque", Vec3)]
+
+
+# ---- Context -----------------------------------------------------------------------------------------------
+
+class Axes(IntEnum):
+    AXES_Z_UP_RIGHT = 0
+    AXES_Y_UP_RIGHT = 1
+    AXES_Y_UP_LEFT = 2
+    AXES_Z_UP_LEFT = 3
+
+
+class LogLevel(IntEnum):
+    LOG_ERROR = 0
+    LOG_WARNING = 1
+    LOG_INFO = 2
+
+
+AllocateFn = CFUNCTYPE(c_void_p, c_void_p, c_uint64, c_uint64)
+FreeFn = CFUNCTYPE(None, c_void_p, c_void_p, c_uint64, c_uint64)
+
+
+class ContextDef(Struct):
+    _fields_ = [("struct_size", c_uint32), ("axes", c_uint32), ("threads", c_uint32),
+                ("log_capacity", c_uint32), ("allocate", AllocateFn), ("release", FreeFn),
+                ("allocator_user", c_void_p)]
+
+
+# ---- Map ---------------------------------------------------------------------------------------------------
+
+class MapInfo(Struct):
+    _fields_ = [("struct_size", c_uint32), ("format_version", c_uint32), ("file_bytes", c_uint64),
+                ("content_hash", c_uint64), ("sources", c_uint32), ("directions", c_uint32),
+                ("samples", c_uint32), ("triangles", c_uint32), ("period", c_float), ("base_speed", c_float),
+                ("density", c_float), ("viscosity", c_float), ("reynolds", c_float),
+                ("reynolds_solved", c_float), ("reference_length", c_float), ("quantisation_error", c_float),
+                ("area", c_float), ("volume", c_float), ("centroid", Vec3), ("bounds_low", Vec3),
+                ("bounds_high", Vec3), ("reserved", c_uint32)]
+
+
+class MapSource(Struct):
+    _fields_ = [("struct_size", c_uint32), ("area", c_float), ("position", Vec3), ("normal", Vec3)]
+
+
+# ---- World -------------------------------------------------------------------------------------------------
+
+class Model(IntEnum):
+    MODEL_PAPER = 0
+    MODEL_DISPLACEMENT = 1
+    MODEL_OWN_WAVES = 2
+    MODEL_DEFAULT = 3
+
+
+class Surface(IntEnum):
+    SURFACE_FLAT = 0
+    SURFACE_NONE = 1
+
+
+class WorldDef(Struct):
+    _fields_ = [("struct_size", c_uint32), ("model", c_uint32), ("surface", c_uint32), ("gravity", c_float),
+                ("density", c_float), ("viscosity", c_float), ("level", c_double)]
+
+
+class WorldStats(Struct):
+    _fields_ = [("struct_size", c_uint32), ("bodies", c_uint32), ("ticks", c_uint64), ("time", c_double),
+                ("wet_bodies", c_uint32), ("wet_sources", c_uint32), ("clipped_triangles", c_uint32),
+                ("water_substeps", c_uint32)]
+
+
+# ---- Water -------------------------------------------------------------------------------------------------
+
+class Border(IntEnum):
+    BORDER_ABSORBING = 0
+    BORDER_REFLECTING = 1
+
+
+class WaterDef(Struct):
+    _fields_ = [("struct_size", c_uint32), ("nx", c_uint32), ("ny", c_uint32), ("border", c_uint32),
+                ("border_cells", c_uint32), ("cell", c_float), ("depth", c_float),
+                ("snapshot_interval", c_float), ("centre_x", c_double), ("centre_y", c_double)]
+
+
+class WaterState(Struct):
+    _fields_ = [("struct_size", c_uint32), ("nx", c_uint32), ("ny", c_uint32), ("reserved", c_uint32),
+                ("capacity", c_uint64), ("tick", c_uint64), ("time", c_double), ("height", POINTER(c_float)),
+                ("velocity_x", POINTER(c_float)), ("velocity_y", POINTER(c_float))]
+
+
+# ---- Body --------------------------------------------------------------------------------------------------
+
+class BodyDef(Struct):
+    _fields_ = [("struct_size", c_uint32), ("scale", c_float), ("map", frm_map), ("mass", c_float),
+                ("centre_of_mass", Vec3), ("pose", Pose), ("twist", Twist)]
+
+
+class Forces(Struct):
+    _fields_ = [("struct_size", c_uint32), ("reserved", c_uint32), ("total", Wrench), ("buoyancy", Wrench),
+                ("pressure", Wrench), ("friction", Wrench), ("gravity", Wrench)]
+
+
+class BodyState(Struct):
+    _fields_ = [("struct_size", c_uint32), ("wet_area", c_float), ("displaced_volume", c_float),
+                ("relative_speed", c_float), ("reynolds", c_float), ("wet_sources", c_uint32), ("pose", Pose),
+                ("twist", Twist)]
+
+
+class SourceState(Struct):
+    _fields_ = [("position", Position), ("force", Vec3), ("relative_velocity", Vec3), ("wet_ratio", c_float),
+                ("map_time", c_float)]
+
+
+# ---- Device ------------------------------------------------------------------------------------------------
+
+class DeviceStatus(IntEnum):
+    DEVICE_READY = 0
+    DEVICE_UNCALIBRATED = 1
+    DEVICE_FAULT = 2
+
+
+class DeviceInfo(Struct):
+    _fields_ = [("struct_size", c_uint32), ("serial", c_uint32), ("max_force", c_float),
+                ("max_torque", c_float), ("period_ns", c_uint64), ("name", c_char * 64)]
+
+
+class DeviceCommand(Struct):
+    _fields_ = [("struct_size", c_uint32), ("reserved", c_uint32), ("wrench", Wrench),
+                ("deadline_ns", c_uint64)]
+
+
+class DeviceState(Struct):
+    _fields_ = [("struct_size", c_uint32), ("status", c_uint32), ("pose", Pose), ("twist", Twist),
+                ("grip", c_float), ("buttons", c_uint32), ("time_ns", c_uint64), ("sequence", c_uint64)]
+
+
+class DeviceDriver(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32), ("reserved", c_uint32),
+        ("enumerate", CFUNCTYPE(frm_status, c_void_p, POINTER(DeviceInfo), c_uint32, POINTER(c_uint32))),
+        ("open", CFUNCTYPE(frm_status, c_void_p, c_uint32, POINTER(c_void_p))),
+        ("close", CFUNCTYPE(frm_status, c_void_p, c_void_p)),
+        ("info", CFUNCTYPE(frm_status, c_void_p, c_void_p, POINTER(DeviceInfo))),
+        ("calibrate", CFUNCTYPE(frm_status, c_void_p, c_void_p)),
+        ("exchange", CFUNCTYPE(frm_status, c_void_p, c_void_p, POINTER(DeviceCommand), POINTER(DeviceState))),
+        ("stop", CFUNCTYPE(frm_status, c_void_p, c_void_p)),
+    ]
+
+
+# ---- Recorder and replay -----------------------------------------------------------------------------------
+
+class RecorderDef(Struct):
+    _fields_ = [("struct_size", c_uint32), ("hash_interval", c_uint32)]
+
+
+class ReplayInfo(Struct):
+    _fields_ = [("struct_size", c_uint32), ("torn", c_uint32), ("ticks", c_uint64), ("time", c_double),
+                ("bodies", c_uint32), ("devices", c_uint32), ("has_water", c_uint32), ("maps", c_uint32)]
+
+
+class Part(IntEnum):
+    PART_NONE = 0
+    PART_BUOYANCY = 1
+    PART_PRESSURE = 2
+    PART_FRICTION = 3
+    PART_GRAVITY = 4
+    PART_TOTAL = 5
+    PART_WORLD = 6
+
+
+class ReplayStepResult(Struct):
+    _fields_ = [("struct_size", c_uint32), ("diverged", c_uint32), ("tick", c_uint64), ("body", c_uint32),
+                ("part", c_uint32)]
+
+
+# ---- The tables --------------------------------------------------------------------------------------------
+
+ENUMS = (Status, Axes, LogLevel, Model, Surface, Border, DeviceStatus, Part)
+
+STRUCTS = (Vec3, Position, Quaternion, Pose, Twist, Wrench, ContextDef, MapInfo, MapSource, WorldDef,
+           WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, SourceState, DeviceInfo,
+           DeviceCommand, DeviceState, DeviceDriver, RecorderDef, ReplayInfo, ReplayStepResult)
+
+_text = POINTER(c_char)
+_u32 = POINTER(c_uint32)
+_u64 = POINTER(c_uint64)
+_floats = POINTER(c_float)
+_handle = POINTER(c_uint64)
+
+# name: (what it returns, what it takes)
+FUNCTIONS = {
+    "frm_status_name": (c_char_p, (frm_status,)),
+    "frm_version": (frm_status, (_u32, _u32, _u32)),
+
+    "frm_context_def_init": (frm_status, (POINTER(ContextDef), c_uint64)),
+    "frm_context_create": (frm_status, (POINTER(ContextDef), _handle)),
+    "frm_context_destroy": (frm_status, (frm_context,)),
+    "frm_context_last_error": (frm_status, (frm_context, _text, c_uint64, _u64)),
+    "frm_context_poll_log": (frm_status, (frm_context, _u32, _text, c_uint64, _u64)),
+
+    "frm_map_open_file": (frm_status, (frm_context, c_char_p, _handle)),
+    "frm_map_open_memory": (frm_status, (frm_context, c_void_p, c_uint64, _handle)),
+    "frm_map_close": (frm_status, (frm_map,)),
+    "frm_map_get_info": (frm_status, (frm_map, POINTER(MapInfo))),
+    "frm_map_get_source": (frm_status, (frm_map, c_uint32, POINTER(MapSource))),
+    "frm_map_get_provenance": (frm_status, (frm_map, _text, c_uint64, _u64)),
+
+    "frm_world_def_init": (frm_status, (POINTER(WorldDef), c_uint64)),
+    "frm_world_create": (frm_status, (frm_context, POINTER(WorldDef), _handle)),
+    "frm_world_destroy": (frm_status, (frm_world,)),
+    "frm_world_tick": (frm_status, (frm_world, c_float)),
+    "frm_world_get_stats": (frm_status, (frm_world, POINTER(WorldStats))),
+    "frm_world_hash": (frm_status, (frm_world, _u64)),
+
+    "frm_water_def_init": (frm_status, (POINTER(WaterDef), c_uint64)),
+    "frm_water_create": (frm_status, (frm_world, POINTER(WaterDef), _handle)),
+    "frm_water_destroy": (frm_status, (frm_water,)),
+    "frm_water_get_def": (frm_status, (frm_water, POINTER(WaterDef))),
+    "frm_water_read": (frm_status, (frm_water, POINTER(WaterState))),
+    "frm_water_read_snapshot": (frm_status, (frm_water, POINTER(WaterState))),
+    "frm_water_set_height": (frm_status, (frm_water, _floats, c_uint64)),
+    "frm_water_set_pressure": (frm_status, (frm_water, _floats, c_uint64)),
+    "frm_water_get_height": (frm_status, (frm_water, c_double, c_double, POINTER(c_double))),
+
+    "frm_body_def_init": (frm_status, (POINTER(BodyDef), c_uint64)),
+    "frm_body_create": (frm_status, (frm_world, POINTER(BodyDef), _handle)),
+    "frm_body_destroy": (frm_status, (frm_body,)),
+    "frm_body_set_motion": (frm_status, (frm_body, POINTER(Pose), POINTER(Twist))),
+    "frm_body_get_forces": (frm_status, (frm_body, POINTER(Forces))),
+    "frm_body_get_state": (frm_status, (frm_body, POINTER(BodyState))),
+    "frm_body_get_sources": (frm_status, (frm_body, POINTER(SourceState), c_uint32, _u32)),
+
+    "frm_device_enumerate": (frm_status, (frm_context, POINTER(DeviceDriver), c_void_p, POINTER(DeviceInfo),
+                                          c_uint32, _u32)),
+    "frm_device_open": (frm_status, (frm_context, POINTER(DeviceDriver), c_void_p, c_uint32, _handle)),
+    "frm_device_open_null": (frm_status, (frm_context, _handle)),
+    "frm_device_open_replay": (frm_status, (frm_context, c_char_p, c_uint32, _handle)),
+    "frm_device_close": (frm_status, (frm_device,)),
+    "frm_device_get_info": (frm_status, (frm_device, POINTER(DeviceInfo))),
+    "frm_device_calibrate": (frm_status, (frm_device,)),
+    "frm_device_exchange": (frm_status, (frm_device, POINTER(DeviceCommand), POINTER(DeviceState))),
+    "frm_device_stop": (frm_status, (frm_device,)),
+
+    "frm_recorder_def_init": (frm_status, (POINTER(RecorderDef), c_uint64)),
+    "frm_recorder_create": (frm_status, (frm_world, c_char_p, POINTER(RecorderDef), _handle)),
+    "frm_recorder_add_device": (frm_status, (frm_recorder, frm_device)),
+    "frm_recorder_close": (frm_status, (frm_recorder,)),
+    "frm_replay_open": (frm_status, (frm_context, c_char_p, _handle)),
+    "frm_replay_close": (frm_status, (frm_replay,)),
+    "frm_replay_get_info": (frm_status, (frm_replay, POINTER(ReplayInfo))),
+    "frm_replay_step": (frm_status, (frm_replay, POINTER(ReplayStepResult))),
+    "frm_replay_get_world": (frm_status, (frm_replay, _handle)),
+    "frm_replay_get_water": (frm_status, (frm_replay, _handle)),
+    "frm_replay_get_body": (frm_status, (frm_replay, c_uint32, _handle)),
+    "frm_replay_get_map": (frm_status, (frm_replay, c_uint32, _handle)),
+}

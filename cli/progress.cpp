@@ -1,0 +1,63 @@
+#include "cli/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+
+namespace frm::cli {
+namespace {
+
+volatile std::sig_atomic_t stop = 0;
+
+void note_interrupt(int) { stop = 1; }
+
+std::string time_text(double seconds) {
+    char text[32];
+    if (seconds < 90) std::snprintf(text, sizeof text, "%.0f s", seconds);
+    else if (seconds < 5400) std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
+    else std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+    return text;
+}
+
+double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
+    return std::chrono::duration<double>(b - a).count();
+}
+
+}  // namespace
+
+bool interrupted() { return stop != 0; }
+
+ProgressBar::ProgressBar(std::string title)
+    : title_(std::move(title)), begin_(Clock::now()), shown_(begin_), terminal_(isatty(STDERR_FILENO) != 0) {
+    std::signal(SIGINT, note_interrupt);
+}
+
+ProgressBar::~ProgressBar() {
+    if (visible_ && terminal_) std::fprintf(stderr, "\r\033[K");
+    std::signal(SIGINT, SIG_DFL);
+}
+
+bool ProgressBar::update(double share, const std::string& note) {
+    const Clock::time_point now = Clock::now();
+    const double elapsed = seconds_between(begin_, now);
+    const double pause = terminal_ ? 0.1 : 5.0;
+    if (elapsed < 2 || (visible_ && seconds_between(shown_, now) < pause)) return !interrupted();
+    visible_ = true;
+    shown_ = now;
+    share = std::clamp(share, 0.0, 1.0);
+    const std::string left = share > 0 ? time_text(elapsed * (1 - share) / share) + " left" : "";
+    if (terminal_) {
+        constexpr int width = 28;
+        const int full = static_cast<int>(share * width);
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f %%  %s  %s", title_.c_str(), std::string(static_cast<std::size_t>(full), '#').c_str(),
+                     std::string(static_cast<std::size_t>(width - full), '.').c_str(), 100 * share, left.c_str(), note.c_str());
+    } else {
+        std::fprintf(stderr, "%s: %3.0f %%, %s, %s\n", title_.c_str(), 100 * share, left.c_str(), note.c_str());
+    }
+    std::fflush(stderr);
+    return !interrupted();
+}
+
+}  // namespace frm::cli

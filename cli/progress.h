@@ -1,0 +1,30 @@
+// How far a long command is, on standard error: a bar with the time left on a terminal, a plain line now and then elsewhere.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace frm::cli {
+
+class ProgressBar {
+public:
+    explicit ProgressBar(std::string title);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// `share` is 0 to 1. Shows nothing during the first two seconds. False once the user has pressed Ctrl-C.
+    bool update(double share, const std::string& note);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    std::string title_;
+    Clock::time_point begin_, shown_;
+    bool terminal_, visible_ = false;
+};
+
+/// True once the user has pressed Ctrl-C; watched from the first ProgressBar on.
+bool interrupted();
+
+}  // namespace frm::cli

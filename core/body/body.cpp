@@ -1,0 +1,22 @@
+#include "core/body/body.h"
+
+namespace frm {
+
+Body::Body(const BodyDef& d, std::uint32_t number, std::pmr::memory_resource* memory)
+    : def(d), id(number), rotation(d.pose.rotation), local(d.map->vertices.size(), Vec3f(), memory),
+      depth(d.map->vertices.size(), 0.0f, memory), sources(d.map->sources.size(), SourceState(), memory) {}
+
+Vec3f Body::centre() const { return (def.map->shape.low + def.map->shape.high) * (0.5f * def.scale); }
+
+float Body::radius() const { return 0.5f * def.scale * length(def.map->shape.high - def.map->shape.low); }
+
+void sum_forces(Body& body, const Fluid& fluid) {
+    const Vec3f weight(0, 0, -body.def.mass * fluid.gravity);
+    const Vec3f arm = body.rotation.to_world(body.def.centre_of_mass * body.def.scale);
+    Forces& f = body.forces;
+    f.gravity = {weight, cross(arm, weight)};
+    f.total = {((f.buoyancy.force + f.pressure.force) + f.friction.force) + f.gravity.force,
+               ((f.buoyancy.torque + f.pressure.torque) + f.friction.torque) + f.gravity.torque};
+}
+
+}  // namespace frm

@@ -1,0 +1,99 @@
+// One rigid body in a world: its motion, what of it is wet, and the forces of the last tick.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <memory_resource>
+#include <optional>
+#include <vector>
+
+#include "core/map/map.h"
+#include "core/math/quat.h"
+#include "core/water/footprint.h"
+
+namespace frm {
+
+struct Pose {
+    Vec3d position;
+    Quat<float> rotation;
+};
+
+struct Twist {
+    Vec3f linear;
+    Vec3f angular;
+};
+
+/// Force and torque about the body's origin, world axes.
+struct Wrench {
+    Vec3f force;
+    Vec3f torque;
+};
+
+struct Forces {
+    Wrench total, buoyancy, pressure, friction, gravity;
+};
+
+struct BodyDef {
+    std::shared_ptr<const Map> map;
+    float scale = 1;
+    float mass = 0;
+    Vec3f centre_of_mass;  ///< body frame, not scaled
+    Pose pose;
+    Twist twist;
+};
+
+/// The fluid that a body is in.
+struct Fluid {
+    float gravity = 9.80665f;
+    float density = 1000;
+    float viscosity = 1e-6f;  ///< kinematic
+};
+
+/// What is remembered of one haptic source between ticks, and of the last one for those who look.
+struct SourceState {
+    float map_time = 0;   ///< s of Eq. 6
+    float wet_area = 0;   ///< m^2
+    float wet_ratio = 0;  ///< alpha of Eq. 6
+    Vec3f position;           ///< local: world axes, origin at the body
+    Vec3f relative_velocity;  ///< of the water against the source, world axes
+    Vec3f pressure, friction;  ///< N, world axes
+};
+
+struct Body {
+    Body(const BodyDef& def, std::uint32_t id, std::pmr::memory_resource* memory);
+
+    BodyDef def;
+    std::uint32_t id;  ///< counts the bodies of a world in the order of creation
+    Rotation<float> rotation;
+    std::pmr::vector<Vec3f> local;    ///< vertices, scaled and turned: world axes, origin at the body
+    std::pmr::vector<float> depth;    ///< of each vertex
+    std::pmr::vector<SourceState> sources;
+    std::optional<Footprint> footprint;  ///< while the world has water
+
+    Forces forces;
+    float displaced_volume = 0, wet_area = 0, relative_speed = 0;
+    std::uint32_t wet_sources = 0, clipped_triangles = 0;
+    float wet_height = 0;  ///< of the wet surface's centroid above the origin, m
+
+    /// Centre and radius of a sphere around the surface, body frame, scaled.
+    Vec3f centre() const;
+    float radius() const;
+};
+
+/// What of the surface is wet (section 6.2) and the hydrostatic force on it (Eqs. 1, 4 and 5), by an exact clip of every triangle
+/// against the surface, taken as flat within the triangle.
+void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid);
+
+/// Lays the volume that the body displaces under the calm surface, `level` above its origin, into its footprint; with `spread`, the
+/// wider the deeper. After measure_wet_surface, which turns the surface.
+void lay_displacement(Body& body, float level, bool spread);
+
+/// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). With `own_waves` the
+/// water's velocity is taken without what the body itself made.
+/// With `spread` the pressure reaches the surface the wider the deeper its source is.
+void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, bool own_waves, bool spread);
+
+/// Weight, and the sum of the parts (Eq. 4).
+void sum_forces(Body& body, const Fluid& fluid);
+
+}  // namespace frm

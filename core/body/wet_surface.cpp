@@ -1,0 +1,81 @@
+#include <algorithm>
+
+#include "core/body/body.h"
+#include "core/body/clip.h"
+
+namespace frm {
+namespace {
+
+/// Sums over the wet surface, in double so that thousands of small triangles do not lose the last digits of a large force.
+class WetSum {
+public:
+    explicit WetSum(bool buoyant) : buoyant_(buoyant) {}
+
+    /// A wholly wet triangle. Pressure is linear over it, so that
+    ///   integral d dA = A (d1 + d2 + d3) / 3,  integral r d dA = A / 12 [(sum r)(sum d) + sum r d].
+    void operator()(const Corner& a, const Corner& b, const Corner& c, const Vec3f& vector_area) {
+        const float area = length(vector_area);
+        wet_area += static_cast<double>(area);
+        height_moment += static_cast<double>(area * (a.at.z + b.at.z + c.at.z) * (1.0f / 3));
+        if (!buoyant_) return;
+        const float depths = a.depth + b.depth + c.depth;
+        force += Vec3d(vector_area * (depths * (1.0f / 3)));
+        const Vec3f arm = ((a.at + b.at + c.at) * depths + (a.at * a.depth + b.at * b.depth + c.at * c.depth)) * (1.0f / 12);
+        torque += Vec3d(cross(arm, vector_area));
+    }
+
+    Vec3d force, torque;  ///< per unit of density * gravity, and outward
+    double wet_area = 0;
+    double height_moment = 0;
+
+private:
+    bool buoyant_;
+};
+
+}  // namespace
+
+void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid) {
+    const Map& map = *body.def.map;
+    const float scale = body.def.scale;
+    bool any_wet = surface.everywhere;
+    for (std::size_t i = 0; i < map.vertices.size(); ++i) {
+        body.local[i] = body.rotation.to_world(map.vertices[i] * scale);
+        body.depth[i] = surface.everywhere ? 1.0f : surface.depth(body.local[i]);
+        any_wet |= body.depth[i] > 0;
+    }
+
+    WetSum sum(!surface.everywhere);
+    body.clipped_triangles = 0;
+    body.wet_sources = 0;
+    for (std::size_t l = 0; l < map.sources.size(); ++l) {
+        SourceState& source = body.sources[l];
+        source.wet_area = 0;
+        source.wet_ratio = 0;
+        if (!any_wet) continue;
+        const double before = sum.wet_area;
+        double whole = 0;
+        bool partly = false;
+        for (std::uint32_t t = map.region_begin[l]; t < map.region_begin[l + 1]; ++t) {
+            const auto& index = map.triangles[t];
+            const Corner corner[3] = {{body.local[index[0]], body.depth[index[0]]},
+                                      {body.local[index[1]], body.depth[index[1]]},
+                                      {body.local[index[2]], body.depth[index[2]]}};
+            const Vec3f vector_area = vector_area_of(corner[0].at, corner[1].at, corner[2].at);
+            whole += static_cast<double>(length(vector_area));
+            const int wet = add_wet_part(corner, vector_area, sum);
+            partly |= wet < 3;
+            body.clipped_triangles += wet == 1 || wet == 2;
+        }
+        source.wet_area = static_cast<float>(sum.wet_area - before);
+        source.wet_ratio = !partly ? 1.0f : std::min(1.0f, static_cast<float>((sum.wet_area - before) / whole));
+        body.wet_sources += source.wet_ratio > 0;
+    }
+
+    const double weight = -static_cast<double>(fluid.density) * static_cast<double>(fluid.gravity);
+    body.forces.buoyancy = {Vec3f(sum.force * weight), Vec3f(sum.torque * weight)};
+    body.displaced_volume = static_cast<float>(-sum.force.z);
+    body.wet_area = static_cast<float>(sum.wet_area);
+    body.wet_height = sum.wet_area > 0 ? static_cast<float>(sum.height_moment / sum.wet_area) : 0.0f;
+}
+
+}  // namespace frm

@@ -1,0 +1,89 @@
+#include "core/map/directions.h"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace frm {
+
+// Points before row i: rows of |i'| = a hold 4 (n - a) points, 1 for a = n. Within a row, columns j hold two points (k < 0 first),
+// one at both ends.
+std::uint32_t DirectionSet::index_of(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    const std::int32_t m = n_ - std::abs(i);
+    std::int32_t before = 0;
+    if (i > -n_) {
+        const std::int32_t rows = i + n_ - 1;  // full rows between the first point and this one
+        const std::int32_t lower = rows < n_ ? rows : n_;
+        before = 1 + 2 * lower * (lower + 1);  // sizes 4, 8, ... up to row 0
+        const std::int32_t upper = rows - lower;
+        before += 4 * (upper * n_ - upper * (upper + 1) / 2);  // sizes 4 (n - 1), 4 (n - 2), ...
+    }
+    if (m == 0) return static_cast<std::uint32_t>(before);
+    const std::int32_t column = j + m;
+    const std::int32_t in_row = column == 0 ? 0 : 1 + 2 * (column - 1) + (column < 2 * m && k > 0 ? 1 : 0);
+    return static_cast<std::uint32_t>(before + in_row);
+}
+
+Vec3d DirectionSet::direction(std::uint32_t index) const {
+    std::uint32_t at = 0;
+    for (std::int32_t i = -n_; i <= n_; ++i) {
+        const std::int32_t m = n_ - std::abs(i);
+        const std::uint32_t row = m == 0 ? 1u : static_cast<std::uint32_t>(4 * m);
+        if (index >= at + row) {
+            at += row;
+            continue;
+        }
+        for (std::int32_t j = -m; j <= m; ++j) {
+            const std::int32_t k = m - std::abs(j);
+            const std::uint32_t here = k == 0 ? 1u : 2u;
+            if (index < at + here) {
+                const Vec3d p(i, j, index == at && k != 0 ? -k : k);
+                return p / length(p);
+            }
+            at += here;
+        }
+    }
+    return {0, 0, 0};
+}
+
+DirectionWeights DirectionSet::interpolate(const Vec3f& d) const {
+    const float n = static_cast<float>(n_);
+    const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
+    const float s = n / (ax + ay + az);
+    const float a = ax * s;
+    const float b = ay * s;
+    float c = n - a - b;
+    if (c < 0) c = 0;
+    const std::int32_t i = a < n ? static_cast<std::int32_t>(a) : n_;
+    const std::int32_t room = n_ - i;
+    const std::int32_t j = b < static_cast<float>(room) ? static_cast<std::int32_t>(b) : room;
+    const float fa = a - static_cast<float>(i);
+    const float fb = b - static_cast<float>(j);
+    const std::int32_t c_room = room - j;
+    std::int32_t k = c < static_cast<float>(c_room) ? static_cast<std::int32_t>(c) : c_room;
+    if (c_room - k > 2) k = c_room - 2;
+    const std::int32_t sx = d.x < 0 ? -1 : 1, sy = d.y < 0 ? -1 : 1, sz = d.z < 0 ? -1 : 1;
+    const auto at = [&](std::int32_t p, std::int32_t q, std::int32_t r) { return index_of(sx * p, sy * q, sz * r); };
+
+    DirectionWeights out{};
+    switch (c_room - k) {
+        case 0:
+            out = {{at(i, j, k), at(i, j, k), at(i, j, k)}, {1, 0, 0}};
+            break;
+        case 1:
+            out = {{at(i + 1, j, k), at(i, j + 1, k), at(i, j, k + 1)}, {fa, fb, 1 - fa - fb}};
+            break;
+        default:
+            out = {{at(i, j + 1, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k)}, {1 - fa, 1 - fb, fa + fb - 1}};
+            break;
+    }
+    // Rounding can leave the third weight a little below zero.
+    if (out.weight[2] < 0) {
+        out.weight[2] = 0;
+        const float sum = out.weight[0] + out.weight[1];
+        out.weight[0] /= sum;
+        out.weight[1] /= sum;
+    }
+    return out;
+}
+
+}  // namespace frm

@@ -1,0 +1,100 @@
+#include "core/water/coupling.h"
+
+#include <algorithm>
+
+namespace frm {
+namespace {
+
+/// The part of a window's rectangle that lies in the water, in the window's cells.
+Rect inside_water(const Footprint& footprint, const Field& water, const Rect& r) {
+    return r.moved(footprint.i0(), footprint.j0()).clipped(water.def().nx, water.def().ny).moved(-footprint.i0(), -footprint.j0());
+}
+
+std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+void displace_water(Footprint& footprint, Field& water) {
+    if (footprint.first) return;
+    Rect changed = footprint.wet();
+    changed.include(footprint.wet_before());
+    if (changed.empty()) return;
+    const std::int32_t n = footprint.size();
+    const float* now = footprint.thickness();
+    const float* before = footprint.thickness_before();
+    for (std::int32_t j = changed.j0; j < changed.j1; ++j)
+        for (std::int32_t i = changed.i0; i < changed.i1; ++i) footprint.own.height()[at(i, j, n)] += now[at(i, j, n)] - before[at(i, j, n)];
+    const Rect r = inside_water(footprint, water, changed);
+    for (std::int32_t j = r.j0; j < r.j1; ++j)
+        for (std::int32_t i = r.i0; i < r.i1; ++i)
+            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] += now[at(i, j, n)] - before[at(i, j, n)];
+}
+
+void withdraw_body(Footprint& footprint, Field& water) {
+    const std::int32_t n = footprint.size();
+    const Rect r = inside_water(footprint, water, footprint.wet_before());
+    for (std::int32_t j = r.j0; j < r.j1; ++j)
+        for (std::int32_t i = r.i0; i < r.i1; ++i)
+            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] -= footprint.thickness_before()[at(i, j, n)];
+}
+
+void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, const Vec3f& angular, float z) {
+    const std::int32_t n = footprint.size();
+    const float* thickness = footprint.thickness();
+    // The spline spreads a thin body over three columns: those with a fifth of the largest thickness are inside.
+    float largest = 0;
+    const Rect& wet = footprint.wet();
+    for (std::int32_t j = wet.j0; j < wet.j1; ++j)
+        for (std::int32_t i = wet.i0; i < wet.i1; ++i) largest = std::max(largest, thickness[at(i, j, n)]);
+    if (!(largest > 0)) return;
+    const auto inside = [&](std::int32_t i, std::int32_t j) {
+        return i >= 0 && j >= 0 && i < n && j < n && thickness[at(i, j, n)] >= 0.2f * largest;
+    };
+    const GridOrigin body = footprint.body_in_window();
+    const float cell = water.def().cell;
+    const auto local = [&](float i, std::int32_t base, float fraction) { return (i - static_cast<float>(base) - fraction) * cell; };
+
+    const Rect r = inside_water(footprint, water, {wet.i0, wet.j0, wet.i1 + 1, wet.j1 + 1});
+    const std::int32_t nx = water.def().nx;
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        for (std::int32_t i = r.i0; i < r.i1; ++i) {
+            const std::int32_t wi = i + footprint.i0(), wj = j + footprint.j0();
+            if (wi > 0 && (inside(i, j) || inside(i - 1, j))) {
+                const float y = local(static_cast<float>(j) + 0.5f, body.j, body.y);
+                float& u = water.velocity_x()[at(wi, wj, nx + 1)];
+                const float change = linear.x + angular.y * z - angular.z * y - u;
+                u += change;
+                footprint.own.velocity_x()[at(i, j, n + 1)] += change;
+            }
+            if (wj > 0 && (inside(i, j) || inside(i, j - 1))) {
+                const float x = local(static_cast<float>(i) + 0.5f, body.i, body.x);
+                float& v = water.velocity_y()[at(wi, wj, nx)];
+                const float change = linear.y + angular.z * x - angular.x * z - v;
+                v += change;
+                footprint.own.velocity_y()[at(i, j, n)] += change;
+            }
+        }
+    }
+}
+
+void push_water(Footprint& footprint, Field& water, float factor) {
+    if (footprint.pressed().empty()) return;
+    footprint.own.push(footprint.pressure(), footprint.pressed(), factor);
+    // The same differences as in Field::push, read from the window.
+    const std::int32_t n = footprint.size(), nx = water.def().nx;
+    const Rect& p = footprint.pressed();
+    const Rect r = inside_water(footprint, water, Rect{p.i0, p.j0, p.i1 + 1, p.j1 + 1}.clipped(n, n));
+    const float f = factor / water.def().cell;
+    const float* pressure = footprint.pressure();
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        for (std::int32_t i = r.i0; i < r.i1; ++i) {
+            const std::int32_t wi = i + footprint.i0(), wj = j + footprint.j0();
+            if (wi > 0 && i > 0) water.velocity_x()[at(wi, wj, nx + 1)] += f * (pressure[at(i, j, n)] - pressure[at(i - 1, j, n)]);
+            if (wj > 0 && j > 0) water.velocity_y()[at(wi, wj, nx)] += f * (pressure[at(i, j, n)] - pressure[at(i, j - 1, n)]);
+        }
+    }
+}
+
+}  // namespace frm

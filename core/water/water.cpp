@@ -1,0 +1,43 @@
+#include "core/water/water.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace frm {
+
+Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
+    : field(def.field, memory), snapshots(field.cells(), memory), def_(def), pressure_(field.cells(), 0.0f, memory) {}
+
+void Water::set_height(const float* height) {
+    field.calm();
+    std::memcpy(field.height(), height, field.cells() * sizeof(float));
+}
+
+void Water::set_pressure(const float* pressure) {
+    pressed_ = pressure != nullptr;
+    if (pressed_) std::memcpy(pressure_.data(), pressure, pressure_.size() * sizeof(float));
+}
+
+void Water::offer_snapshot(std::uint64_t tick, double time) {
+    if (time < next_snapshot_) return;
+    if (!snapshots.publish(field, tick, time)) return;
+    next_snapshot_ = time + static_cast<double>(def_.snapshot_interval);
+}
+
+GridOrigin Water::origin_at(double x, double y) const {
+    const auto split = [&](double position, double centre, std::int32_t cells, std::int32_t& whole, float& rest) {
+        const double limit = 1e6;
+        const double at = (position - centre) / static_cast<double>(def_.field.cell) + 0.5 * cells;
+        const double clamped = std::clamp(at, -limit, limit);
+        const double floor = std::floor(clamped);
+        whole = static_cast<std::int32_t>(floor);
+        rest = static_cast<float>(clamped - floor);
+    };
+    GridOrigin origin;
+    split(x, def_.centre_x, def_.field.nx, origin.i, origin.x);
+    split(y, def_.centre_y, def_.field.ny, origin.j, origin.y);
+    return origin;
+}
+
+}  // namespace frm

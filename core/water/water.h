@@ -1,0 +1,45 @@
+// A world's water: the field, what the host presses on it, and the snapshots for other threads.
+#pragma once
+
+#include <memory_resource>
+#include <vector>
+
+#include "core/water/field.h"
+#include "core/water/snapshot.h"
+
+namespace frm {
+
+struct WaterDef {
+    FieldDef field;
+    double centre_x = 0, centre_y = 0;    ///< m
+    float snapshot_interval = 1.0f / 60;  ///< s
+};
+
+class Water {
+public:
+    Water(const WaterDef& def, std::pmr::memory_resource* memory);
+
+    const WaterDef& def() const { return def_; }
+    Field field;
+    SnapshotExchange snapshots;
+
+    void set_height(const float* height);
+    /// Null takes the pressure away.
+    void set_pressure(const float* pressure);
+    /// Null while the host presses nowhere.
+    const float* pressure() const { return pressed_ ? pressure_.data() : nullptr; }
+
+    /// Publishes a snapshot when the interval has passed.
+    void offer_snapshot(std::uint64_t tick, double time);
+
+    /// Where a horizontal position lies in the grid. Positions more than a million cells outside are moved nearer: all is flat there.
+    GridOrigin origin_at(double x, double y) const;
+
+private:
+    WaterDef def_;
+    double next_snapshot_ = 0;
+    bool pressed_ = false;
+    std::pmr::vector<float> pressure_;
+};
+
+}  // namespace frm

@@ -1,0 +1,129 @@
+#include "core/world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/water/coupling.h"
+
+namespace frm {
+
+World::World(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resource* memory)
+    : def_(def), threads_(threads), memory_(memory), bodies_(memory) {}
+
+Water& World::create_water(const WaterDef& def) {
+    water_ = std::allocate_shared<Water>(std::pmr::polymorphic_allocator<Water>(memory_), def, memory_);
+    for (const auto& body : bodies_) give_footprint(*body);
+    if (observer_) observer_->water_created(*this);
+    return *water_;
+}
+
+void World::destroy_water() {
+    for (const auto& body : bodies_) body->footprint.reset();
+    water_.reset();
+    if (observer_) observer_->water_destroyed(*this);
+}
+
+void World::set_height(const float* height) {
+    water_->set_height(height);
+    if (observer_) observer_->height_set(*this, height, water_->field.cells());
+}
+
+void World::set_pressure(const float* pressure) {
+    water_->set_pressure(pressure);
+    if (observer_) observer_->pressure_set(*this, pressure, pressure ? water_->field.cells() : 0);
+}
+
+Body& World::create_body(const BodyDef& def, std::uint32_t id) {
+    auto body = std::allocate_shared<Body>(std::pmr::polymorphic_allocator<Body>(memory_), def, id, memory_);
+    if (water_) give_footprint(*body);
+    bodies_.push_back(std::move(body));
+    next_body_ = id + 1;
+    if (observer_) observer_->body_created(*this, *bodies_.back());
+    return *bodies_.back();
+}
+
+void World::give_footprint(Body& body) { body.footprint.emplace(water_->def().field, body.radius(), memory_); }
+
+void World::destroy_body(Body& body) {
+    if (body.footprint && def_.model & model_displacement) withdraw_body(*body.footprint, water_->field);
+    const std::uint32_t id = body.id;
+    bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == &body; }));
+    if (observer_) observer_->body_destroyed(*this, id);
+}
+
+void World::set_motion(Body& body, const Pose& pose, const Twist& twist) {
+    body.def.pose = pose;
+    body.def.twist = twist;
+    body.rotation = Rotation<float>(pose.rotation);
+    if (observer_) observer_->motion_set(*this, body);
+}
+
+SurfaceView World::view_from(const Body& body) const {
+    SurfaceView view;
+    view.everywhere = def_.everywhere;
+    view.level = static_cast<float>(def_.level - body.def.pose.position.z);
+    if (water_) {
+        view.field = &water_->field;
+        view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
+        view.cells_per_metre = 1.0f / water_->def().field.cell;
+    }
+    return view;
+}
+
+void World::tick(float dt) {
+    std::uint32_t substeps = 0;
+    if (water_) {
+        const float needed = std::ceil(dt / Field::stable_step(water_->def().field, def_.fluid.gravity));
+        if (!(needed <= static_cast<float>(max_substeps)))
+            throw Error(FRM_ERROR_LIMIT, "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
+                        static_cast<double>(dt), static_cast<double>(needed), max_substeps);
+        substeps = std::max(1u, static_cast<std::uint32_t>(needed));
+    }
+
+    const bool own_waves = (def_.model & model_own_waves) != 0, spread = (def_.model & model_displacement) != 0;
+    for (const auto& body : bodies_) {
+        const SurfaceView view = view_from(*body);
+        if (body->footprint) {
+            const Vec3f centre = body->rotation.to_world(body->centre());
+            const GridOrigin at = water_->origin_at(body->def.pose.position.x + static_cast<double>(centre.x),
+                                                    body->def.pose.position.y + static_cast<double>(centre.y));
+            body->footprint->begin(at.i, at.j, view.origin);
+        }
+        measure_wet_surface(*body, view, def_.fluid);
+        if (body->footprint) lay_displacement(*body, view.level, spread);
+        look_up_resistance(*body, view, def_.fluid, dt, own_waves, spread);
+        sum_forces(*body, def_.fluid);
+    }
+    if (water_) move_water(dt, substeps);
+
+    ++ticks_;
+    time_ += static_cast<double>(dt);
+    substeps_ = substeps;
+    if (water_) water_->offer_snapshot(ticks_, time_);
+    if (observer_) observer_->ticked(*this, dt);
+}
+
+void World::move_water(float dt, std::uint32_t substeps) {
+    Field& field = water_->field;
+    const float step = dt / static_cast<float>(substeps), push = step / def_.fluid.density;
+    const Rect all{0, 0, field.def().nx, field.def().ny};
+    for (const auto& body : bodies_) {
+        Footprint& footprint = *body->footprint;
+        if (def_.model & model_displacement)
+            displace_water(footprint, field);
+        else
+            force_velocity(footprint, field, body->def.twist.linear, body->def.twist.angular, body->wet_height);
+    }
+    for (std::uint32_t n = 0; n < substeps; ++n) {
+        if (water_->pressure()) field.push(water_->pressure(), all, push);
+        for (const auto& body : bodies_) push_water(*body->footprint, field, push);
+        field.step(step, def_.fluid.gravity, threads_);
+        if (!(def_.model & model_own_waves)) continue;
+        for (const auto& body : bodies_)
+            if (body->footprint->active()) body->footprint->own.step(step, def_.fluid.gravity, 1);
+    }
+    for (const auto& body : bodies_) body->footprint->end();
+}
+
+}  // namespace frm

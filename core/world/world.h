@@ -1,0 +1,87 @@
+// A world: a fluid, at most one water, bodies; and one tick in order.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <memory_resource>
+#include <vector>
+
+#include "core/body/body.h"
+#include "core/water/water.h"
+
+namespace frm {
+
+enum Model : std::uint32_t { model_paper = 0, model_displacement = 1, model_own_waves = 2 };
+
+struct WorldDef {
+    std::uint32_t model = model_displacement | model_own_waves;
+    bool everywhere = false;  ///< fluid without a surface
+    double level = 0;         ///< of the calm surface, m
+    Fluid fluid;
+};
+
+class World;
+
+/// Is told of everything that changes a world, after it was done: how a recorder sees it.
+class WorldObserver {
+public:
+    virtual ~WorldObserver() = default;
+    virtual void water_created(const World& world) = 0;
+    virtual void water_destroyed(const World& world) = 0;
+    virtual void height_set(const World& world, const float* height, std::size_t count) = 0;
+    virtual void pressure_set(const World& world, const float* pressure, std::size_t count) = 0;
+    virtual void body_created(const World& world, const Body& body) = 0;
+    virtual void body_destroyed(const World& world, std::uint32_t id) = 0;
+    virtual void motion_set(const World& world, const Body& body) = 0;
+    virtual void ticked(const World& world, float dt) = 0;
+};
+
+class World {
+public:
+    World(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resource* memory);
+
+    const WorldDef& def() const { return def_; }
+    std::uint64_t ticks() const { return ticks_; }
+    double time() const { return time_; }
+    std::uint32_t substeps() const { return substeps_; }
+    std::uint32_t bodies_created() const { return next_body_; }
+
+    Water& create_water(const WaterDef& def);
+    void destroy_water();
+    Water* water() { return water_.get(); }
+    const Water* water() const { return water_.get(); }
+    void set_height(const float* height);
+    void set_pressure(const float* pressure);
+
+    Body& create_body(const BodyDef& def) { return create_body(def, next_body_); }
+    /// With a number of its own, not below bodies_created(): how a replay keeps the recorded ones.
+    Body& create_body(const BodyDef& def, std::uint32_t id);
+    void destroy_body(Body& body);
+    const std::pmr::vector<std::shared_ptr<Body>>& bodies() const { return bodies_; }
+    void set_motion(Body& body, const Pose& pose, const Twist& twist);
+
+    /// Throws Error (FRM_ERROR_LIMIT), with nothing changed, if the waves would need more than max_substeps steps.
+    void tick(float dt);
+    static constexpr std::uint32_t max_substeps = 1024;
+
+    std::uint64_t hash() const;
+    void observe(WorldObserver* observer) { observer_ = observer; }
+    WorldObserver* observer() const { return observer_; }
+
+private:
+    SurfaceView view_from(const Body& body) const;
+    void give_footprint(Body& body);
+    void move_water(float dt, std::uint32_t substeps);
+
+    WorldDef def_;
+    std::uint32_t threads_;
+    std::pmr::memory_resource* memory_;
+    std::shared_ptr<Water> water_;
+    std::pmr::vector<std::shared_ptr<Body>> bodies_;
+    WorldObserver* observer_ = nullptr;
+    std::uint64_t ticks_ = 0;
+    double time_ = 0;
+    std::uint32_t substeps_ = 0, next_body_ = 0;
+};
+
+}  // namespace frm

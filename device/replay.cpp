@@ -1,0 +1,163 @@
+#include "device/replay.h"
+
+#include <cstring>
+
+#include "core/error.h"
+
+namespace frm::device {
+namespace {
+
+bool same_bits(const Wrench& a, const Wrench& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+}  // namespace
+
+Replay::Replay(api::Context& context, const char* path) : context_(context), reader_(path) {
+    survey();
+    reader_.rewind();
+    try {
+        advance_to_tick();
+        if (!world_) throw Error(FRM_ERROR_CORRUPT, "%s: holds no world", path);
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+Replay::~Replay() { release(); }
+
+void Replay::release() {
+    if (world_) context_.remove(world_->handle);
+    world_.reset();
+    for (const ReplayedMap& map : maps_) context_.remove(map.handle);
+    maps_.clear();
+}
+
+// A caller finds the world as it was just before the next tick: water, bodies and maps are there to look at before the first step.
+void Replay::advance_to_tick() {
+    Event e;
+    has_tick_ = false;
+    while (!has_tick_ && reader_.next(e)) std::visit([&](const auto& what) { apply(what); }, e);
+}
+
+void Replay::survey() {
+    info_.struct_size = sizeof info_;
+    Event e;
+    while (reader_.next(e)) {
+        if (const auto* tick = std::get_if<event::Tick>(&e)) {
+            ++info_.ticks;
+            info_.time += static_cast<double>(tick->dt);
+        }
+        info_.bodies += std::holds_alternative<event::Body>(e);
+        info_.devices += std::holds_alternative<event::Device>(e);
+        info_.maps += std::holds_alternative<event::Map>(e);
+        if (std::holds_alternative<event::Water>(e)) info_.has_water = 1;
+    }
+    info_.torn = reader_.torn();
+    if (info_.torn) context_.log(FRM_LOG_WARNING, "the recording was cut off after %llu ticks", static_cast<unsigned long long>(info_.ticks));
+}
+
+World& Replay::the_world() {
+    if (!world_) throw Error(FRM_ERROR_CORRUPT, "recording: something happens before there is a world");
+    return world_->world;
+}
+
+Replay::ReplayedBody& Replay::the_body(std::uint32_t id) {
+    if (id >= bodies_.size() || !bodies_[id].body) throw Error(FRM_ERROR_CORRUPT, "recording: body %u is not there", id);
+    return bodies_[id];
+}
+
+void Replay::apply(const event::World& e) {
+    if (world_) throw Error(FRM_ERROR_CORRUPT, "recording: a second world");
+    world_ = context_.make<api::WorldObject>(e.def, context_.threads(), context_.memory());
+    world_->replayed = true;
+    api::add_world(context_, world_);
+}
+
+void Replay::apply(const event::Map& e) {
+    auto map = api::read_map(context_, e.file.data(), e.file.size());
+    const std::uint64_t handle = context_.add(api::Kind::map, context_.make<api::MapObject>(map));
+    maps_.push_back({std::move(map), handle});
+}
+
+void Replay::apply(const event::Water& e) {
+    if (the_world().water()) throw Error(FRM_ERROR_CORRUPT, "recording: a second water");
+    the_world().create_water(e.def);
+    water_ = api::add_water(context_, *world_);
+}
+
+void Replay::apply(const event::WaterEnd&) {
+    if (!the_world().water()) throw Error(FRM_ERROR_CORRUPT, "recording: there is no water to take away");
+    context_.remove(water_);
+    water_ = 0;
+    the_world().destroy_water();
+}
+
+void Replay::apply(const event::Height& e) {
+    const Water* water = the_world().water();
+    if (!water || e.values.size() != water->field.cells()) throw Error(FRM_ERROR_CORRUPT, "recording: heights do not fit the water");
+    the_world().set_height(e.values.data());
+}
+
+void Replay::apply(const event::Pressure& e) {
+    const Water* water = the_world().water();
+    if (!water || (!e.values.empty() && e.values.size() != water->field.cells()))
+        throw Error(FRM_ERROR_CORRUPT, "recording: pressures do not fit the water");
+    the_world().set_pressure(e.values.empty() ? nullptr : e.values.data());
+}
+
+void Replay::apply(const event::Body& e) {
+    // A recorder may begin when earlier bodies are gone: numbers grow, but need not follow on.
+    if (e.map >= maps_.size() || e.id < bodies_.size() || e.id > bodies_.size() + 1'000'000)
+        throw Error(FRM_ERROR_CORRUPT, "recording: body %u does not follow", e.id);
+    BodyDef def = e.def;
+    def.map = maps_[e.map].map;
+    bodies_.resize(e.id + 1);
+    Body& body = the_world().create_body(def, e.id);
+    bodies_[e.id] = {&body, api::add_body(context_, *world_, body)};
+}
+
+void Replay::apply(const event::BodyEnd& e) {
+    ReplayedBody& body = the_body(e.id);
+    context_.remove(body.handle);
+    the_world().destroy_body(*body.body);
+    body = {};
+}
+
+void Replay::apply(const event::Motion& e) { the_world().set_motion(*the_body(e.id).body, e.pose, e.twist); }
+
+void Replay::compare(const event::Tick& e, frm_replay_step_result& result) const {
+    const World& world = world_->world;
+    const auto differs = [&](std::uint32_t body, frm_part part) {
+        result.diverged = 1;
+        result.body = body;
+        result.part = part;
+    };
+    if (e.forces.size() != world.bodies().size()) return differs(0, FRM_PART_WORLD);
+    for (std::size_t i = 0; i < e.forces.size(); ++i) {
+        const Forces &now = world.bodies()[i]->forces, &then = e.forces[i];
+        const std::uint32_t id = world.bodies()[i]->id;
+        if (!same_bits(now.buoyancy, then.buoyancy)) return differs(id, FRM_PART_BUOYANCY);
+        if (!same_bits(now.pressure, then.pressure)) return differs(id, FRM_PART_PRESSURE);
+        if (!same_bits(now.friction, then.friction)) return differs(id, FRM_PART_FRICTION);
+        if (!same_bits(now.gravity, then.gravity)) return differs(id, FRM_PART_GRAVITY);
+        if (!same_bits(now.total, then.total)) return differs(id, FRM_PART_TOTAL);
+    }
+    if (e.has_hash && e.hash != world.hash()) differs(0, FRM_PART_WORLD);
+}
+
+frm_replay_step_result Replay::step() {
+    // What follows a tick is applied with the next step, so that the answers to this one can be looked at.
+    if (stepped_) advance_to_tick();
+    stepped_ = false;
+    if (!has_tick_) throw Error(FRM_ERROR_END, "the recording has no more ticks");
+    if (!(next_tick_.dt >= 1e-6f && next_tick_.dt <= 0.1f))
+        throw Error(FRM_ERROR_CORRUPT, "recording: a tick of %g s", static_cast<double>(next_tick_.dt));
+    the_world().tick(next_tick_.dt);
+    stepped_ = true;
+    frm_replay_step_result result{};
+    result.tick = world_->world.ticks();
+    compare(next_tick_, result);
+    return result;
+}
+
+}  // namespace frm::device

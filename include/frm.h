@@ -1,0 +1,629 @@
+/*
+ * frm - the force of water on moving rigid objects, at haptic rates.
+ *
+ * A *map* (Fluid Resistance Map; Dobashi, Sato, Hasegawa, Yamamoto, Kato and Nishita, VRST 2006) holds what a bake
+ * learnt about one object: its surface, split into regions with one *haptic source* each, and the pressure and
+ * friction force of a uniform stream on every region, from many directions, over time. At run time a *world* holds
+ * *bodies* (a map each) and at most one *water* (a height field with waves). One *tick* finds what part of every body
+ * is wet, integrates buoyancy, looks the resistance up by the velocity relative to the water, lets the bodies push
+ * the water back, and leaves a *wrench* (force and torque) for each body. The host moves the bodies: from a game, a
+ * robot, a haptic *device*. A *recorder* keeps all that a world was told; a *replay* checks that it gives the same
+ * bits again.
+ *
+ *   frm_context context;  frm_context_create(NULL, &context);
+ *   frm_map map;          frm_map_open_file(context, "paddle.frm", &map);
+ *   frm_world world;      frm_world_create(context, NULL, &world);
+ *   frm_water water;      frm_water_create(world, NULL, &water);
+ *   frm_body_def def;     frm_body_def_init(&def, sizeof def);
+ *   def.map = map;        def.mass = 1.2f;
+ *   frm_body body;        frm_body_create(world, &def, &body);
+ *   for (;;) {
+ *       frm_body_set_motion(body, &pose, &twist);
+ *       frm_world_tick(world, 0.002f);
+ *       frm_forces forces = { sizeof forces };
+ *       frm_body_get_forces(body, &forces);
+ *       ... apply forces.total to the object at its origin ...
+ *   }
+ *   frm_context_destroy(context);
+ *
+ * Units are SI: m, s, kg, N, N m, Pa, rad. Positions are double, all else float.
+ *
+ * Frames. The world frame is right-handed with z up unless frm_context_def.axes says otherwise; every position,
+ * vector and rotation that crosses this interface is in the host's frame. A body's own frame is the frame of the
+ * mesh file that was baked; wrenches and twists are about the body's origin, which is the mesh file's origin.
+ *
+ * Results. Every function returns an frm_status: FRM_OK (0), or a negative error after which nothing has changed
+ * except the context's last-error text (frm_context_last_error). Results come through out pointers, which are
+ * written only on success.
+ *
+ * Handles are 64-bit values; 0 is none. A handle that is stale or of another type gives FRM_ERROR_HANDLE, never a
+ * crash. Destroying an object destroys what was made in it: a context its maps, worlds, devices, recorders and
+ * replays; a world its water and bodies.
+ *
+ * Structs that may grow begin with struct_size. Fill a def with its _def_init, then change what you need; a NULL
+ * def pointer means all defaults where the function says so. Set struct_size = sizeof of every struct that the
+ * library fills. A struct larger than this library knows is accepted if what it does not know is zero.
+ *
+ * Threads. Each function carries one tag:
+ *   [any]      any thread, at any time, while the object exists
+ *   [owner]    one thread at a time per context; may allocate, lock or read files
+ *   [realtime] as [owner], and no lock, no allocation, bounded time
+ *   [offline]  as [owner], and may take seconds
+ * Two contexts share nothing that a caller can see.
+ *
+ * The caller's floating-point modes (rounding, flush to zero) do not matter and are not changed.
+ */
+#ifndef FRM_H
+#define FRM_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define FRM_CALL __cdecl
+#if defined(FRM_BUILD)
+#define FRM_API __declspec(dllexport)
+#else
+#define FRM_API __declspec(dllimport)
+#endif
+#else
+#define FRM_CALL
+#define FRM_API __attribute__((visibility("default")))
+#endif
+
+/* Version of this header. The shared library's SOVERSION is the major version. */
+#define FRM_VERSION_MAJOR 0
+#define FRM_VERSION_MINOR 1
+#define FRM_VERSION_PATCH 0
+
+/* ---- Status ------------------------------------------------------------------------------------------------- */
+
+/* Values are pinned for ever. */
+typedef int32_t frm_status;
+enum {
+    FRM_OK = 0,
+    FRM_ERROR_ARGUMENT = -1,  /* a null pointer, a number that is not finite or out of range */
+    FRM_ERROR_HANDLE = -2,    /* a handle that is 0, stale or of another type */
+    FRM_ERROR_STATE = -3,     /* not allowed now: the message says what must come first */
+    FRM_ERROR_VERSION = -4,   /* a struct or file from a version that this library does not know */
+    FRM_ERROR_MEMORY = -5,    /* the allocator has no more */
+    FRM_ERROR_FILE = -6,      /* a file cannot be opened, read or written */
+    FRM_ERROR_CORRUPT = -7,   /* a file's contents are damaged or are not what they claim */
+    FRM_ERROR_CAPACITY = -8,  /* the caller's buffer is too small; the needed size was written */
+    FRM_ERROR_LIMIT = -9,     /* too many objects, or a size beyond what this version takes */
+    FRM_ERROR_DEVICE = -10,   /* a device failed; its own message is in the last-error text */
+    FRM_ERROR_END = -11,      /* a recording has no more to give */
+    FRM_ERROR_INTERNAL = -12  /* a defect in this library; please report it with the last-error text */
+};
+
+/* The name of a status, such as "FRM_ERROR_HANDLE"; "FRM_UNKNOWN" for other values. Static text, never null. [any] */
+FRM_API const char *FRM_CALL frm_status_name(frm_status status);
+
+/* The version of the library that runs, which may differ from this header's. Each pointer may be null. [any] */
+FRM_API frm_status FRM_CALL frm_version(uint32_t *major, uint32_t *minor, uint32_t *patch);
+
+/* ---- Handles and plain values ------------------------------------------------------------------------------- */
+
+typedef uint64_t frm_context;
+typedef uint64_t frm_map;
+typedef uint64_t frm_world;
+typedef uint64_t frm_water;
+typedef uint64_t frm_body;
+typedef uint64_t frm_device;
+typedef uint64_t frm_recorder;
+typedef uint64_t frm_replay;
+
+typedef struct frm_vec3 {
+    float x, y, z;
+} frm_vec3;
+
+typedef struct frm_position {
+    double x, y, z; /* m */
+} frm_position;
+
+/* A rotation from the body's frame to the world's. Need not be exactly of length 1: it is normalised; zero is an error. */
+typedef struct frm_quaternion {
+    float x, y, z, w;
+} frm_quaternion;
+
+typedef struct frm_pose {
+    frm_position position; /* of the body's origin, in the world */
+    frm_quaternion rotation;
+} frm_pose;
+
+/* Velocity of the body's origin (m/s) and angular velocity (rad/s), both in the world frame. */
+typedef struct frm_twist {
+    frm_vec3 linear;
+    frm_vec3 angular;
+} frm_twist;
+
+/* Force (N) and torque about the body's origin (N m), both in the world frame. */
+typedef struct frm_wrench {
+    frm_vec3 force;
+    frm_vec3 torque;
+} frm_wrench;
+
+/* ---- Context ------------------------------------------------------------------------------------------------- */
+
+/* The host's axes. Vectors are converted at this interface. A body's frame is the mesh file's (glTF: y up,
+ * right-handed) as the host's usual importer shows it: unchanged for the two right-handed ones, x negated for
+ * FRM_AXES_Y_UP_LEFT (glTFast, UnityGLTF), y and z exchanged for FRM_AXES_Z_UP_LEFT (Unreal's importer). */
+typedef enum frm_axes {
+    FRM_AXES_Z_UP_RIGHT = 0, /* frm's own; ROS, Blender */
+    FRM_AXES_Y_UP_RIGHT = 1, /* Godot, glTF, OpenGL */
+    FRM_AXES_Y_UP_LEFT = 2,  /* Unity */
+    FRM_AXES_Z_UP_LEFT = 3   /* Unreal, in metres */
+} frm_axes;
+
+typedef enum frm_log_level { FRM_LOG_ERROR = 0, FRM_LOG_WARNING = 1, FRM_LOG_INFO = 2 } frm_log_level;
+
+/* Returns at least `size` bytes aligned to `alignment` (a power of two), or null. */
+typedef void *(FRM_CALL *frm_allocate_fn)(void *user, uint64_t size, uint64_t alignment);
+/* Gives back what frm_allocate_fn returned, with the same size and alignment. */
+typedef void(FRM_CALL *frm_free_fn)(void *user, void *memory, uint64_t size, uint64_t alignment);
+
+typedef struct frm_context_def {
+    uint32_t struct_size;
+    uint32_t axes;         /* frm_axes; default FRM_AXES_Z_UP_RIGHT */
+    uint32_t threads;      /* 1 to 64, for large water only; default 1. Results do not depend on it */
+    uint32_t log_capacity; /* messages kept until polled, 0 to 4096; the oldest go first; default 64 */
+    frm_allocate_fn allocate; /* null (default) for the C++ runtime's; else `release` too. zstd's own working
+                                 memory while a file is opened or written does not come from it */
+    frm_free_fn release;
+    void *allocator_user;
+} frm_context_def;
+
+/* Fills a def with defaults; writes at most `size` bytes. Null or a size under 4: FRM_ERROR_ARGUMENT. [any] */
+FRM_API frm_status FRM_CALL frm_context_def_init(frm_context_def *def, uint64_t size);
+
+/* Makes a context, the root of all other objects. def may be null. At most 64 at a time (FRM_ERROR_LIMIT). A
+ * context starts no thread before it needs one. [any] */
+FRM_API frm_status FRM_CALL frm_context_create(const frm_context_def *def, frm_context *context);
+
+/* Destroys the context and everything made in it; recordings still open are closed first. Every handle of it
+ * becomes stale. Calling it again is harmless and returns FRM_ERROR_HANDLE. No other call on this context may be
+ * running. [owner] */
+FRM_API frm_status FRM_CALL frm_context_destroy(frm_context context);
+
+/* The text of the last error in this context: what was wrong with which argument. Copies it with a closing zero into
+ * `text` (`capacity` bytes) and writes the bytes needed, the zero included, to *size. text may be null to ask for
+ * the size; too small: FRM_ERROR_CAPACITY. The text stays until the next error. [owner] */
+FRM_API frm_status FRM_CALL frm_context_last_error(frm_context context, char *text, uint64_t capacity, uint64_t *size);
+
+/* Takes the oldest waiting log message: as frm_context_last_error, and its frm_log_level to *level (may be null).
+ * With no message waiting, *size is 0. A message is removed once it was copied whole. [owner] */
+FRM_API frm_status FRM_CALL frm_context_poll_log(frm_context context, uint32_t *level, char *text, uint64_t capacity,
+                                                 uint64_t *size);
+
+/* ---- Map ------------------------------------------------------------------------------------------------------ */
+
+typedef struct frm_map_info {
+    uint32_t struct_size;
+    uint32_t format_version;
+    uint64_t file_bytes;
+    uint64_t content_hash;    /* of the file's contents; equal hashes, equal maps */
+    uint32_t sources;         /* haptic sources, one a region */
+    uint32_t directions;      /* of the uniform stream */
+    uint32_t samples;         /* of one period of the series */
+    uint32_t triangles;       /* sample triangles of the surface */
+    float period;             /* map time after which the series repeat, s */
+    float base_speed;         /* u0 of Eq. 6, m/s */
+    float density;            /* of the fluid baked, kg/m^3 */
+    float viscosity;          /* kinematic, of the fluid baked, m^2/s */
+    float reynolds;           /* base_speed * reference_length / viscosity */
+    float reynolds_solved;    /* what the solver's grid could carry; less than or equal to `reynolds` */
+    float reference_length;   /* m; the square root of the projected area, mean over the directions */
+    float quantisation_error; /* largest error of a stored force, as a share of the peak force on the whole object */
+    float area;               /* of the surface, m^2 */
+    float volume;             /* m^3 */
+    frm_vec3 centroid;        /* of the volume, in the body's frame */
+    frm_vec3 bounds_low;      /* bounding box, in the body's frame */
+    frm_vec3 bounds_high;
+    uint32_t reserved;
+} frm_map_info;
+
+/* One haptic source, in the body's frame at scale 1. */
+typedef struct frm_map_source {
+    uint32_t struct_size;
+    float area;        /* of the region, m^2 */
+    frm_vec3 position; /* area-weighted centroid of the region, m */
+    frm_vec3 normal;   /* area-weighted mean, outward; shorter than 1 where the region is curved */
+} frm_map_source;
+
+/* Opens a map file (docs/format.md). The whole file is read and checked: FRM_ERROR_FILE, FRM_ERROR_CORRUPT or
+ * FRM_ERROR_VERSION, with a text that names the chunk. path is UTF-8. [offline] */
+FRM_API frm_status FRM_CALL frm_map_open_file(frm_context context, const char *path, frm_map *map);
+
+/* As frm_map_open_file, from `size` bytes in memory, which are copied. [offline] */
+FRM_API frm_status FRM_CALL frm_map_open_memory(frm_context context, const void *data, uint64_t size, frm_map *map);
+
+/* Closes a map. FRM_ERROR_STATE while a body uses it. [owner] */
+FRM_API frm_status FRM_CALL frm_map_close(frm_map map);
+
+/* What the map holds. [owner] */
+FRM_API frm_status FRM_CALL frm_map_get_info(frm_map map, frm_map_info *info);
+
+/* One source, index below frm_map_info.sources. [owner] */
+FRM_API frm_status FRM_CALL frm_map_get_source(frm_map map, uint32_t index, frm_map_source *source);
+
+/* How the map was made, as JSON text (mesh name and hash, solver, grid, convergence, time spent): two-call rule of
+ * frm_context_last_error. [owner] */
+FRM_API frm_status FRM_CALL frm_map_get_provenance(frm_map map, char *text, uint64_t capacity, uint64_t *size);
+
+/* ---- World ---------------------------------------------------------------------------------------------------- */
+
+/* What of the paper is repaired; a sum. FRM_MODEL_PAPER is the paper's method to the letter. */
+typedef enum frm_model {
+    FRM_MODEL_PAPER = 0,
+    /* Bodies push the water by the volume that they displace (conserves volume, leaves no current behind), instead
+     * of forcing the water's velocity inside them (section 6.3). */
+    FRM_MODEL_DISPLACEMENT = 1,
+    /* A body does not feel the part of the water's velocity that it made itself: the map's stream holds that flow
+     * already. Without it, relative velocity and drag vanish where the body drags the water along. */
+    FRM_MODEL_OWN_WAVES = 2,
+    FRM_MODEL_DEFAULT = 3
+} frm_model;
+
+/* Where the fluid ends, for a world without frm_water. */
+typedef enum frm_surface {
+    FRM_SURFACE_FLAT = 0, /* fluid below `level`, nothing above */
+    FRM_SURFACE_NONE = 1  /* fluid everywhere: air, or the deep sea. No buoyancy: it needs a surface (section 8) */
+} frm_surface;
+
+typedef struct frm_world_def {
+    uint32_t struct_size;
+    uint32_t model;    /* frm_model; default FRM_MODEL_DEFAULT */
+    uint32_t surface;  /* frm_surface; default FRM_SURFACE_FLAT. A world with FRM_SURFACE_NONE takes no frm_water */
+    float gravity;     /* downwards, 0 to 1000 m/s^2; default 9.80665 */
+    float density;     /* of the fluid, 1e-3 to 1e5 kg/m^3; default 1000 */
+    float viscosity;   /* kinematic, 1e-9 to 1e2 m^2/s; default 1e-6 */
+    double level;      /* height of the calm surface, m; default 0 */
+} frm_world_def;
+
+typedef struct frm_world_stats {
+    uint32_t struct_size;
+    uint32_t bodies;
+    uint64_t ticks;
+    double time;               /* sum of all dt, s */
+    uint32_t wet_bodies;       /* in the last tick */
+    uint32_t wet_sources;      /* in the last tick: sources with wet ratio > 0 */
+    uint32_t clipped_triangles; /* in the last tick: triangles cut by the surface */
+    uint32_t water_substeps;   /* in the last tick */
+} frm_world_stats;
+
+/* Fills a def with defaults; writes at most `size` bytes. [any] */
+FRM_API frm_status FRM_CALL frm_world_def_init(frm_world_def *def, uint64_t size);
+
+/* Makes an empty world. def may be null. [owner] */
+FRM_API frm_status FRM_CALL frm_world_create(frm_context context, const frm_world_def *def, frm_world *world);
+
+/* Destroys a world with its water and bodies. FRM_ERROR_STATE while a recorder or replay uses it. [owner] */
+FRM_API frm_status FRM_CALL frm_world_destroy(frm_world world);
+
+/* Advances the world by dt seconds, 1e-6 to 0.1: buoyancy (Eqs. 1, 4, 5), resistance (Eq. 6), waves (Eqs. 7 to 10),
+ * for all bodies in the order of their creation, with the poses and twists last set. The forces are those at the
+ * poses given. Error: nothing has changed. [realtime], except that an open recorder writes a block every 64 ticks. */
+FRM_API frm_status FRM_CALL frm_world_tick(frm_world world, float dt);
+
+/* Counters. [realtime] */
+FRM_API frm_status FRM_CALL frm_world_get_stats(frm_world world, frm_world_stats *stats);
+
+/* A 64-bit hash of everything that decides the world's future: water, poses, map times, forces. Equal histories
+ * give equal hashes on every build. Takes time in proportion to the water's cells. [owner] */
+FRM_API frm_status FRM_CALL frm_world_hash(frm_world world, uint64_t *hash);
+
+/* ---- Water ---------------------------------------------------------------------------------------------------- */
+
+typedef enum frm_border {
+    FRM_BORDER_ABSORBING = 0, /* waves leave */
+    FRM_BORDER_REFLECTING = 1 /* walls: a closed basin */
+} frm_border;
+
+/* A height field of nx by ny cells over a bed at constant depth. Cell (i, j) is stored at index j * nx + i; i runs
+ * along the first horizontal axis, j along the second: (x, y) for FRM_AXES_Z_UP_RIGHT, (z, x) for
+ * FRM_AXES_Y_UP_RIGHT, (x, z) for FRM_AXES_Y_UP_LEFT, (y, x) for FRM_AXES_Z_UP_LEFT. */
+typedef struct frm_water_def {
+    uint32_t struct_size;
+    uint32_t nx;          /* cells, 8 to 8192; default 200 */
+    uint32_t ny;          /* cells, 8 to 8192; default 200 */
+    uint32_t border;      /* frm_border; default FRM_BORDER_ABSORBING */
+    uint32_t border_cells; /* width of the absorbing layer, 0 to 64 and under a third of nx and ny; default 16 */
+    float cell;           /* edge of a cell, 1e-4 to 1e3 m; default 0.025 */
+    float depth;          /* d of Eq. 8: mean water depth, 1e-3 to 1e4 m; default 0.5. Waves run at sqrt(g d) */
+    float snapshot_interval; /* seconds between snapshots, 0 (every tick) to 10; default 1/60 */
+    double centre_x;      /* of the field, on the first horizontal axis, m; default 0 */
+    double centre_y;      /* on the second; default 0 */
+} frm_water_def;
+
+/* A view of the field. The library fills nx, ny, tick and time, and copies into each array that is not null. */
+typedef struct frm_water_state {
+    uint32_t struct_size;
+    uint32_t nx;
+    uint32_t ny;
+    uint32_t reserved;
+    uint64_t capacity;  /* in: floats that each array can take; nx * ny are needed */
+    uint64_t tick;      /* out: ticks of the world when the field was like this */
+    double time;        /* out: s */
+    float *height;      /* out: above the calm level, at cell centres, m; may be null */
+    float *velocity_x;  /* out: water velocity along the first horizontal axis, at cell centres, m/s; may be null */
+    float *velocity_y;  /* out: along the second; may be null */
+} frm_water_state;
+
+/* Fills a def with defaults; writes at most `size` bytes. [any] */
+FRM_API frm_status FRM_CALL frm_water_def_init(frm_water_def *def, uint64_t size);
+
+/* Gives the world its water, calm. def may be null. A world has at most one (FRM_ERROR_STATE). Outside the field the
+ * surface is flat at the world's level. [owner] */
+FRM_API frm_status FRM_CALL frm_water_create(frm_world world, const frm_water_def *def, frm_water *water);
+
+/* Takes the water away; the world's surface is flat again. [owner] */
+FRM_API frm_status FRM_CALL frm_water_destroy(frm_water water);
+
+/* The water's size, as made. [owner] */
+FRM_API frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def *def);
+
+/* The field as it is now. FRM_ERROR_CAPACITY if capacity < nx * ny while an array is not null. [realtime] */
+FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *state);
+
+/* The newest snapshot, while another thread ticks: as frm_water_read, at most snapshot_interval old. Any number of
+ * readers; never waits for the ticking thread and never makes it wait. [any] */
+FRM_API frm_status FRM_CALL frm_water_read_snapshot(frm_water water, frm_water_state *state);
+
+/* Sets heights (m, at cell centres, within +-depth) and lets the water rest. `count` must be nx * ny. [owner] */
+FRM_API frm_status FRM_CALL frm_water_set_height(frm_water water, const float *height, uint64_t count);
+
+/* Sets a pressure (Pa, at cell centres) that pushes up on the surface in every tick until it is changed: p of
+ * Eqs. 9 and 10, added to what bodies do. Held still it raises the water by p / (density * gravity). Null with
+ * count 0 takes it away; else `count` must be nx * ny. [owner] */
+FRM_API frm_status FRM_CALL frm_water_set_pressure(frm_water water, const float *pressure, uint64_t count);
+
+/* Height of the surface (m, in the world, level included) at a position on the first and second horizontal axis; the
+ * calm level outside. [realtime] */
+FRM_API frm_status FRM_CALL frm_water_get_height(frm_water water, double x, double y, double *height);
+
+/* ---- Body ----------------------------------------------------------------------------------------------------- */
+
+typedef struct frm_body_def {
+    uint32_t struct_size;
+    float scale;               /* of the map's object, 1e-3 to 1e3; default 1. Forces follow by similarity */
+    frm_map map;               /* required */
+    float mass;                /* kg, 0 (default; no weight) to 1e9 */
+    frm_vec3 centre_of_mass;   /* r_g of Eq. 5, in the body's frame, not scaled, m; default 0 */
+    frm_pose pose;             /* default: the origin, unrotated */
+    frm_twist twist;           /* default: at rest */
+} frm_body_def;
+
+/* The wrench on the body and its parts. total = buoyancy + pressure + friction + gravity. */
+typedef struct frm_forces {
+    uint32_t struct_size;
+    uint32_t reserved;
+    frm_wrench total;
+    frm_wrench buoyancy; /* hydrostatic pressure, Eq. 1 */
+    frm_wrench pressure; /* pressure resistance, Eq. 3 by Eq. 6 */
+    frm_wrench friction; /* frictional resistance, Eq. 2 by Eq. 6 */
+    frm_wrench gravity;  /* m g at the centre of mass */
+} frm_forces;
+
+typedef struct frm_body_state {
+    uint32_t struct_size;
+    float wet_area;          /* m^2 */
+    float displaced_volume;  /* m^3: buoyancy / (density * gravity) */
+    float relative_speed;    /* area-weighted mean over the wet sources, m/s */
+    float reynolds;          /* at that speed, this scale and this fluid; compare frm_map_info.reynolds_solved */
+    uint32_t wet_sources;
+    frm_pose pose;           /* as last set */
+    frm_twist twist;
+} frm_body_state;
+
+/* One haptic source after a tick, in the world frame. */
+typedef struct frm_source_state {
+    frm_position position;
+    frm_vec3 force;             /* pressure + friction, N */
+    frm_vec3 relative_velocity; /* of the water against the source, m/s */
+    float wet_ratio;            /* alpha of Eq. 6, 0 to 1 */
+    float map_time;             /* s of Eq. 6, s */
+} frm_source_state;
+
+/* Fills a def with defaults; writes at most `size` bytes. [any] */
+FRM_API frm_status FRM_CALL frm_body_def_init(frm_body_def *def, uint64_t size);
+
+/* Puts a body into a world. The map must be of the same context and stay open. [owner] */
+FRM_API frm_status FRM_CALL frm_body_create(frm_world world, const frm_body_def *def, frm_body *body);
+
+/* Takes a body out. The water it displaced flows back. [owner] */
+FRM_API frm_status FRM_CALL frm_body_destroy(frm_body body);
+
+/* Where the body is and how it moves, from the next tick on. twist may be null: at rest. Positions up to 1e9 m,
+ * speeds up to 1e4 m/s and rad/s. [realtime] */
+FRM_API frm_status FRM_CALL frm_body_set_motion(frm_body body, const frm_pose *pose, const frm_twist *twist);
+
+/* The forces of the last tick; zero before the first. [realtime] */
+FRM_API frm_status FRM_CALL frm_body_get_forces(frm_body body, frm_forces *forces);
+
+/* How wet the body is, and how fast it goes through the water. [realtime] */
+FRM_API frm_status FRM_CALL frm_body_get_state(frm_body body, frm_body_state *state);
+
+/* The sources after the last tick, for arrows and analysis. Two-call rule: *count receives the number of sources;
+ * sources may be null; `capacity` below the number: FRM_ERROR_CAPACITY. [realtime] */
+FRM_API frm_status FRM_CALL frm_body_get_sources(frm_body body, frm_source_state *sources, uint32_t capacity,
+                                                 uint32_t *count);
+
+/* ---- Device --------------------------------------------------------------------------------------------------- */
+
+typedef enum frm_device_status {
+    FRM_DEVICE_READY = 0,
+    FRM_DEVICE_UNCALIBRATED = 1, /* poses are not to be trusted yet */
+    FRM_DEVICE_FAULT = 2         /* forces are off until the cause is gone */
+} frm_device_status;
+
+typedef struct frm_device_info {
+    uint32_t struct_size;
+    uint32_t serial;
+    float max_force;    /* N; 0: none is felt */
+    float max_torque;   /* N m */
+    uint64_t period_ns; /* of its own cycle; 0: as it is asked */
+    char name[64];      /* UTF-8, closed by zero */
+} frm_device_info;
+
+/* What the host tells the device in one exchange. */
+typedef struct frm_device_command {
+    uint32_t struct_size;
+    uint32_t reserved;
+    frm_wrench wrench;    /* to be displayed, about the grip's origin, world frame */
+    uint64_t deadline_ns; /* the device goes to its safe state if no exchange follows within this; 0: its default */
+} frm_device_command;
+
+/* What the device tells the host in one exchange. */
+typedef struct frm_device_state {
+    uint32_t struct_size;
+    uint32_t status;   /* frm_device_status */
+    frm_pose pose;     /* of the grip */
+    frm_twist twist;
+    float grip;        /* 0 open to 1 closed */
+    uint32_t buttons;  /* one bit each */
+    uint64_t time_ns;  /* monotonic, the device's clock */
+    uint64_t sequence; /* counts exchanges from 0 */
+} frm_device_state;
+
+/* A driver: any host can write one. `user` is the pointer given to frm_device_open; `instance` is what open made.
+ * Each returns an frm_status, and none may throw. Called only from within the frm_device_ function of its name,
+ * and `close` also when the context is destroyed. */
+typedef struct frm_device_driver {
+    uint32_t struct_size;
+    uint32_t reserved;
+    /* Writes the number of devices to *count and the first `capacity` of them to list (may be null). */
+    frm_status(FRM_CALL *enumerate)(void *user, frm_device_info *list, uint32_t capacity, uint32_t *count);
+    frm_status(FRM_CALL *open)(void *user, uint32_t index, void **instance);
+    frm_status(FRM_CALL *close)(void *user, void *instance);
+    frm_status(FRM_CALL *info)(void *user, void *instance, frm_device_info *info);
+    /* The grip is at its reference pose now. */
+    frm_status(FRM_CALL *calibrate)(void *user, void *instance);
+    /* One cycle: takes the command, fills the state. Bounded time, no allocation. */
+    frm_status(FRM_CALL *exchange)(void *user, void *instance, const frm_device_command *command, frm_device_state *state);
+    /* Safe state at once: no force. */
+    frm_status(FRM_CALL *stop)(void *user, void *instance);
+} frm_device_driver;
+
+/* The number of devices that a driver sees, and what they are: two-call rule; a capacity below the number fills what
+ * fits and is no error. The driver is only read. [owner] */
+FRM_API frm_status FRM_CALL frm_device_enumerate(frm_context context, const frm_device_driver *driver, void *user,
+                                                 frm_device_info *list, uint32_t capacity, uint32_t *count);
+
+/* Opens device `index` of a driver. The driver struct is copied; `user` must outlive the device. [owner] */
+FRM_API frm_status FRM_CALL frm_device_open(frm_context context, const frm_device_driver *driver, void *user,
+                                            uint32_t index, frm_device *device);
+
+/* A device that is not there: its grip rests at the origin, its clock runs 2 ms an exchange, forces are swallowed.
+ * For hosts that run without hardware, and for tests. [owner] */
+FRM_API frm_status FRM_CALL frm_device_open_null(frm_context context, frm_device *device);
+
+/* A device that moves as one in a recording did: exchange k gives the state recorded in exchange k of device
+ * `index` (0 for the first that was added to the recorder); after the last, FRM_ERROR_END. Forces are swallowed.
+ * FRM_ERROR_STATE if the recording holds no such device. [offline] */
+FRM_API frm_status FRM_CALL frm_device_open_replay(frm_context context, const char *path, uint32_t index,
+                                                   frm_device *device);
+
+/* Stops the device and closes it. [owner] */
+FRM_API frm_status FRM_CALL frm_device_close(frm_device device);
+
+/* What the device is. [owner] */
+FRM_API frm_status FRM_CALL frm_device_get_info(frm_device device, frm_device_info *info);
+
+/* Tells the device that its grip is at the reference pose. [owner] */
+FRM_API frm_status FRM_CALL frm_device_calibrate(frm_device device);
+
+/* One cycle. command may be null: no force. A command that is not finite is refused before the driver sees it, and a
+ * state that is not finite is FRM_ERROR_DEVICE. Bounded as the driver is. [realtime] */
+FRM_API frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_device_command *command,
+                                                frm_device_state *state);
+
+/* Safe state at once. [realtime] */
+FRM_API frm_status FRM_CALL frm_device_stop(frm_device device);
+
+/* ---- Recorder and replay -------------------------------------------------------------------------------------- */
+
+typedef struct frm_recorder_def {
+    uint32_t struct_size;
+    uint32_t hash_interval; /* ticks between two recorded hashes of the whole world, 1 to 1e6; default 100 */
+} frm_recorder_def;
+
+typedef struct frm_replay_info {
+    uint32_t struct_size;
+    uint32_t torn;       /* 1: the recording was cut off; all up to there is replayed */
+    uint64_t ticks;
+    double time;         /* sum of all dt, s */
+    uint32_t bodies;     /* ever created in it */
+    uint32_t devices;
+    uint32_t has_water;
+    uint32_t maps;
+} frm_replay_info;
+
+/* What a replay compares, in the order in which it compares. */
+typedef enum frm_part {
+    FRM_PART_NONE = 0,
+    FRM_PART_BUOYANCY = 1,
+    FRM_PART_PRESSURE = 2,
+    FRM_PART_FRICTION = 3,
+    FRM_PART_GRAVITY = 4,
+    FRM_PART_TOTAL = 5,
+    FRM_PART_WORLD = 6 /* the hash of the whole world */
+} frm_part;
+
+typedef struct frm_replay_step_result {
+    uint32_t struct_size;
+    uint32_t diverged; /* 1: this tick's result differs from the recording */
+    uint64_t tick;     /* of the world after this step; the first tick is 1 */
+    uint32_t body;     /* the first that differs, in order of creation */
+    uint32_t part;     /* frm_part, the first that differs */
+} frm_replay_step_result;
+
+/* Fills a def with defaults; writes at most `size` bytes. [any] */
+FRM_API frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def *def, uint64_t size);
+
+/* Records what a world is told and what it answers, from now until closed; the maps are kept inside the recording.
+ * The world must not have ticked yet (FRM_ERROR_STATE) and takes one recorder. def may be null. The recording grows
+ * as `path`.part and gets its name when it is closed; if the process dies, the .part file is still a recording that
+ * lacks at most its last 64 ticks. An existing file is replaced on closing. path is UTF-8. [offline] */
+FRM_API frm_status FRM_CALL frm_recorder_create(frm_world world, const char *path, const frm_recorder_def *def,
+                                                frm_recorder *recorder);
+
+/* Records every exchange of this device too. At most 16. [owner] */
+FRM_API frm_status FRM_CALL frm_recorder_add_device(frm_recorder recorder, frm_device device);
+
+/* Writes what is left and gives the file its name. A write that failed since the start (disk full) is reported
+ * here: FRM_ERROR_FILE, and the .part file is left. The handle is stale afterwards in any case. [owner] */
+FRM_API frm_status FRM_CALL frm_recorder_close(frm_recorder recorder);
+
+/* Opens a recording and makes a world of its own to replay it in. [offline] */
+FRM_API frm_status FRM_CALL frm_replay_open(frm_context context, const char *path, frm_replay *replay);
+
+/* Closes a replay and destroys its world and maps. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_close(frm_replay replay);
+
+/* What the recording holds. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_get_info(frm_replay replay, frm_replay_info *info);
+
+/* Replays up to and including the next tick and compares bit for bit. After the last tick: FRM_ERROR_END. A
+ * difference is not an error: it is reported, and the replay can go on. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_step(frm_replay replay, frm_replay_step_result *result);
+
+/* The replay's world, to look at (stats, hash); it must not be ticked or changed by the caller. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_get_world(frm_replay replay, frm_world *world);
+
+/* The replay's water; FRM_ERROR_STATE while there is none. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_get_water(frm_replay replay, frm_water *water);
+
+/* Body `index` in order of creation; FRM_ERROR_STATE if it is not there now. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_get_body(frm_replay replay, uint32_t index, frm_body *body);
+
+/* Map `index`, below frm_replay_info.maps, as it was in the recording. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_get_map(frm_replay replay, uint32_t index, frm_map *map);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* FRM_H */

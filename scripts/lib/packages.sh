@@ -1,0 +1,75 @@
+# shellcheck shell=bash
+# Installs what is missing from Debian or Ubuntu packages. Source it after stages.sh.
+
+# shellcheck disable=SC2034  # these three are used by the scripts that source this file
+packages_build=(g++ cmake ninja-build pkg-config libzstd-dev libtinygltf-dev libkissfft-dev libcli11-dev
+    nlohmann-json3-dev python3 python3-matplotlib python3-numpy)
+# shellcheck disable=SC2034
+packages_test=(catch2 python3-pytest)
+
+# Always the system's Python: the packages above belong to it, and a version manager's python3 in PATH has none of them.
+# shellcheck disable=SC2034
+python=/usr/bin/python3
+
+package_installed() {
+    # A package that another one provides (pkgconf for pkg-config, on newer systems) has no entry of its own.
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ||
+        dpkg-query -W -f '${db:Status-Status} ${Provides}\n' | grep '^installed' | tr -s ' ,' '\n' | grep -Fx -- "$1" >/dev/null
+}
+
+# Runs a command as root, by sudo where needed. Without a terminal sudo must not wait for a password.
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif [ -t 0 ]; then
+        sudo "$@"
+    else
+        sudo -n "$@"
+    fi
+}
+
+# Mirrors fail at times: three tries, with a growing pause.
+apt_retry() {
+    local try
+    for try in 1 2 3; do
+        if as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 \
+            -o Dpkg::Use-Pty=0 "$@"; then
+            return 0
+        fi
+        [ "$try" -eq 3 ] || { say "apt-get $1 failed, trying again"; sleep $((try * 5)); }
+    done
+    return 1
+}
+
+# The tools without which no build can start, for systems whose packages have other names.
+tools_missing() {
+    local tool
+    for tool in c++ cmake ninja pkg-config "$python"; do
+        command -v "$tool" >/dev/null || printf '%s ' "$tool"
+    done
+}
+
+install_packages() {
+    local package missing=()
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        say "this is not a Debian or Ubuntu system; what these packages hold must be there: $*"
+        local tools
+        tools=$(tools_missing)
+        [ -z "$tools" ] || die "not found: $tools"
+        say "the tools are there; going on (a library that is missing shows when CMake runs)"
+        return 0
+    fi
+    for package in "$@"; do
+        package_installed "$package" || missing+=("$package")
+    done
+    if [ "${#missing[@]}" -eq 0 ]; then
+        say "all packages are there"
+        return 0
+    fi
+    if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
+        die "not root and no sudo here; please install: ${missing[*]}"
+    fi
+    say "installing: ${missing[*]}"
+    apt_retry update || die "apt-get update failed"
+    apt_retry install -y --no-install-recommends "${missing[@]}" || die "apt-get install failed for: ${missing[*]}"
+}
