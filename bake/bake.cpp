@@ -99,7 +99,7 @@ std::string provenance(const BakeOptions& options, const BakePlan& plan, const B
     j["start_up_lengths"] = plan.start_up;
     j["period_lengths"] = plan.period;
     j["harmonics"] = plan.harmonics;
-    j["repairs"] = plan.notes;
+    j["notes"] = plan.notes;
     for (std::size_t d = 0; d < report.directions.size(); ++d) {
         const DirectionReport& r = report.directions[d];
         const FlowPlan& flow = plan.flows[d];

@@ -17,6 +17,9 @@ if(TARGET frm_cli)
     file(RELATIVE_PATH frm_bin_to_lib "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")
     set_target_properties(frm_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${frm_bin_to_lib}")
     install(TARGETS frm_cli RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+    # Reports are drawn by the Python binding, which the program looks for at ../share/frm/python.
+    install(DIRECTORY "${PROJECT_SOURCE_DIR}/bindings/python/frm" DESTINATION share/frm/python
+        PATTERN __pycache__ EXCLUDE)
 endif()
 
 install(EXPORT frmTargets NAMESPACE frm:: DESTINATION "${FRM_INSTALL_CMAKEDIR}")

@@ -10,13 +10,13 @@ struct Corner {
     float depth;  ///< below the surface, m
 };
 
-/// Calls add(corner, corner, corner, vector_area) for each wholly wet piece: none, the triangle itself, or one or two pieces of it.
-/// `vector_area` of the triangle points outward. Returns the number of wet corners.
+/// Calls add(corner, corner, corner, share) for each wholly wet piece, `share` being its part of the triangle's area: nothing, the
+/// triangle itself, or one or two pieces of it. Returns the number of wet corners.
 template <typename Add>
-int add_wet_part(const Corner corner[3], const Vec3f& vector_area, Add&& add) {
+int add_wet_part(const Corner corner[3], Add&& add) {
     const bool wet[3] = {corner[0].depth > 0, corner[1].depth > 0, corner[2].depth > 0};
     const int count = wet[0] + wet[1] + wet[2];
-    if (count == 3) add(corner[0], corner[1], corner[2], vector_area);
+    if (count == 3) add(corner[0], corner[1], corner[2], 1.0f);
     if (count == 0 || count == 3) return count;
 
     int odd = 0;  // the corner that is alone on its side of the surface
@@ -26,10 +26,10 @@ int add_wet_part(const Corner corner[3], const Vec3f& vector_area, Add&& add) {
     const float s = p.depth / (p.depth - q.depth), t = p.depth / (p.depth - r.depth);
     const Corner on_q{p.at + (q.at - p.at) * s, 0}, on_r{p.at + (r.at - p.at) * t, 0};
     if (wet[odd]) {
-        add(p, on_q, on_r, vector_area * (s * t));
+        add(p, on_q, on_r, s * t);
     } else {
-        add(on_q, q, r, vector_area * (1 - s));
-        add(on_q, r, on_r, vector_area * (s * (1 - t)));
+        add(on_q, q, r, 1 - s);
+        add(on_q, r, on_r, s * (1 - t));
     }
     return count;
 }

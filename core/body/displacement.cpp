@@ -13,11 +13,11 @@ void lay_displacement(Body& body, float level, bool spread) {
         const Corner corner[3] = {{body.local[index[0]], level - body.local[index[0]].z},
                                   {body.local[index[1]], level - body.local[index[1]].z},
                                   {body.local[index[2]], level - body.local[index[2]].z}};
-        const Vec3f vector_area = vector_area_of(corner[0].at, corner[1].at, corner[2].at);
-        add_wet_part(corner, vector_area, [&](const Corner& a, const Corner& b, const Corner& c, const Vec3f& area) {
+        const float area_up = vector_area_of(corner[0].at, corner[1].at, corner[2].at).z;
+        add_wet_part(corner, [&](const Corner& a, const Corner& b, const Corner& c, float share) {
             const Vec3f at[3] = {a.at, b.at, c.at};
             const float depth[3] = {a.depth, b.depth, c.depth};
-            footprint.deposit(at, depth, area, spread);
+            footprint.deposit(at, depth, share * area_up, spread);
         });
     }
     footprint.gather();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 
 #include "core/body/body.h"
 #include "core/body/clip.h"
@@ -11,13 +12,17 @@ class WetSum {
 public:
     explicit WetSum(bool buoyant) : buoyant_(buoyant) {}
 
-    /// A wholly wet triangle. Pressure is linear over it, so that
+    /// The triangle whose pieces come next: its outward vector area and the length of that.
+    void begin(const Vec3f& vector_area, float area) { vector_area_ = vector_area, area_ = area; }
+
+    /// A wholly wet piece of the triangle. Pressure is linear over it, so that
     ///   integral d dA = A (d1 + d2 + d3) / 3,  integral r d dA = A / 12 [(sum r)(sum d) + sum r d].
-    void operator()(const Corner& a, const Corner& b, const Corner& c, const Vec3f& vector_area) {
-        const float area = length(vector_area);
+    void operator()(const Corner& a, const Corner& b, const Corner& c, float share) {
+        const float area = share * area_;
         wet_area += static_cast<double>(area);
         height_moment += static_cast<double>(area * (a.at.z + b.at.z + c.at.z) * (1.0f / 3));
         if (!buoyant_) return;
+        const Vec3f vector_area = vector_area_ * share;
         const float depths = a.depth + b.depth + c.depth;
         force += Vec3d(vector_area * (depths * (1.0f / 3)));
         const Vec3f arm = ((a.at + b.at + c.at) * depths + (a.at * a.depth + b.at * b.depth + c.at * c.depth)) * (1.0f / 12);
@@ -30,6 +35,8 @@ public:
 
 private:
     bool buoyant_;
+    Vec3f vector_area_;
+    float area_ = 0;
 };
 
 }  // namespace
@@ -53,21 +60,20 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
         source.wet_ratio = 0;
         if (!any_wet) continue;
         const double before = sum.wet_area;
-        double whole = 0;
         bool partly = false;
         for (std::uint32_t t = map.region_begin[l]; t < map.region_begin[l + 1]; ++t) {
             const auto& index = map.triangles[t];
             const Corner corner[3] = {{body.local[index[0]], body.depth[index[0]]},
                                       {body.local[index[1]], body.depth[index[1]]},
                                       {body.local[index[2]], body.depth[index[2]]}};
-            const Vec3f vector_area = vector_area_of(corner[0].at, corner[1].at, corner[2].at);
-            whole += static_cast<double>(length(vector_area));
-            const int wet = add_wet_part(corner, vector_area, sum);
+            sum.begin(vector_area_of(corner[0].at, corner[1].at, corner[2].at), map.triangle_area[t] * scale * scale);
+            const int wet = add_wet_part(corner, std::ref(sum));
             partly |= wet < 3;
             body.clipped_triangles += wet == 1 || wet == 2;
         }
         source.wet_area = static_cast<float>(sum.wet_area - before);
-        source.wet_ratio = !partly ? 1.0f : std::min(1.0f, static_cast<float>((sum.wet_area - before) / whole));
+        const float ratio = source.wet_area / (map.region_area[l] * scale * scale);
+        source.wet_ratio = partly ? std::min(1.0f, ratio) : 1.0f;
         body.wet_sources += source.wet_ratio > 0;
     }
 

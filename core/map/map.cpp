@@ -9,7 +9,7 @@ namespace frm {
 
 Map::Map(std::pmr::memory_resource* memory)
     : vertices(memory), triangles(memory), region_begin(memory), sources(memory), mean(memory), step(memory),
-      fluctuation(memory), provenance(memory), file(memory) {}
+      fluctuation(memory), provenance(memory), triangle_area(memory), region_area(memory), file(memory) {}
 
 namespace {
 
@@ -73,6 +73,18 @@ void Map::complete() {
     for (const SourceForce& f : mean) require(finite(f.pressure) && finite(f.friction), "a mean force is not finite");
     for (const float s : step) require(std::isfinite(s) && s >= 0, "a fluctuation's step is not a number");
 
+    triangle_area.clear();
+    region_area.clear();
+    for (std::size_t l = 0; l < sources.size(); ++l) {
+        double sum = 0;
+        for (std::uint32_t t = region_begin[l]; t < region_begin[l + 1]; ++t) {
+            const Vec3f& a = vertices[triangles[t][0]];
+            triangle_area.push_back(0.5f * length(cross(vertices[triangles[t][1]] - a, vertices[triangles[t][2]] - a)));
+            sum += static_cast<double>(triangle_area.back());
+        }
+        region_area.push_back(static_cast<float>(sum));
+        require(sum > 0, "a region has no area");
+    }
     shape = shape_of(*this);
     require(shape.volume > 0, "the surface encloses no volume");
 }

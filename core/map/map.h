@@ -65,13 +65,17 @@ struct Map {
     std::pmr::vector<std::int16_t> fluctuation;  ///< [direction][source][sample][component]
     std::pmr::string provenance;                ///< JSON text
 
-    MapShape shape;                       ///< filled by complete()
+    // Filled by complete().
+    MapShape shape;
+    std::pmr::vector<float> triangle_area;  ///< m^2
+    std::pmr::vector<float> region_area;    ///< the sum of its triangles'
+
     std::pmr::vector<std::uint8_t> file;  ///< the bytes it was read from; empty for a map that was made in memory
     std::uint64_t content_hash = 0;
 
     std::uint32_t source_count() const { return static_cast<std::uint32_t>(sources.size()); }
 
-    /// Checks that everything fits together and is finite, and fills `shape`. Throws Error (FRM_ERROR_CORRUPT) naming what does not.
+    /// Checks that everything fits together and is finite, and fills what follows from it. Throws Error (FRM_ERROR_CORRUPT) naming what does not.
     void complete();
 };
 

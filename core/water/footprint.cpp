@@ -97,7 +97,7 @@ void Footprint::add(int level, float x, float y, float thickness) {
     grid.wet.include({i - 1, j - 1, i + 2, j + 2});
 }
 
-void Footprint::deposit(const Vec3f corner[3], const float depth[3], const Vec3f& vector_area, bool spread) {
+void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_up, bool spread) {
     const float scale = 1.0f / cell_;
     float x[3], y[3];
     const float base_x = static_cast<float>(body_.i - i0_) + body_.x, base_y = static_cast<float>(body_.j - j0_) + body_.y;
@@ -122,10 +122,11 @@ void Footprint::deposit(const Vec3f corner[3], const float depth[3], const Vec3f
 
     const float extent = std::max(std::max({x[0], x[1], x[2]}) - std::min({x[0], x[1], x[2]}),
                                   std::max({y[0], y[1], y[2]}) - std::min({y[0], y[1], y[2]})) / static_cast<float>(1 << level);
-    // Points no further apart than half a cell, so that front and back of a slanted sheet meet in the same columns.
-    const std::int32_t parts = std::clamp(static_cast<std::int32_t>(std::ceil(2.0f * extent)), 1, 16);
+    // Points no further apart than a cell: quadratic splines on such a grid add up evenly, so that front and back of a slanted sheet
+    // cancel in every column.
+    const std::int32_t parts = std::clamp(static_cast<std::int32_t>(std::ceil(extent)), 1, 32);
     const float third = 1.0f / (3.0f * static_cast<float>(parts));
-    const float share = -keep * vector_area.z / (static_cast<float>(parts * parts) * cell_ * cell_);
+    const float share = -keep * area_up / (static_cast<float>(parts * parts) * cell_ * cell_);
     const float fine = 1.0f / static_cast<float>(1 << level), coarse = 0.5f * fine;
     for (std::int32_t a = 0; a < parts; ++a) {
         for (std::int32_t b = 0; b < 2 * (parts - a) - 1; ++b) {

@@ -21,10 +21,10 @@ public:
     /// Starts a tick: the window follows the body's centre, which is in cell (i, j) of the water.
     void begin(std::int32_t i, std::int32_t j, const GridOrigin& body);
 
-    /// A wet piece of the surface: corners in the body's local frame, their depths, and its vector area (outward). Its share of the
-    /// displaced volume, -n_z times the integral of the depth, goes into the columns around it; over a closed surface the shares
+    /// A wet piece of the surface: corners in the body's local frame, their depths, and its area as seen from above (n_z times its
+    /// area). Its share of the displaced volume, minus that area times the mean depth, goes into the columns around it; over a closed surface the shares
     /// add up to the displaced volume. With `spread` the columns reach the wider the deeper the piece is.
-    void deposit(const Vec3f corner[3], const float depth[3], const Vec3f& vector_area, bool spread);
+    void deposit(const Vec3f corner[3], const float depth[3], float area_up, bool spread);
     /// After the last deposit: adds what was spread wide to thickness().
     void gather();
 

@@ -1,0 +1,75 @@
+#include "bake/flow/far_field.h"
+
+#include <algorithm>
+
+namespace frm::bake::flow {
+namespace {
+
+constexpr float outlet_restoring = 0.1f;
+
+float equilibrium(int i, float excess, float ux, float uy, float uz) {
+    const Direction& c = directions[static_cast<std::size_t>(i)];
+    const float along = static_cast<float>(c.x) * ux + static_cast<float>(c.y) * uy + static_cast<float>(c.z) * uz;
+    const float square = ux * ux + uy * uy + uz * uz;
+    return weight(i) * (excess + (1 + excess) * (3 * along + 4.5f * along * along - 1.5f * square));
+}
+
+}  // namespace
+
+std::array<float, direction_count> stream_populations(float speed) {
+    std::array<float, direction_count> f{};
+    for (int i = 0; i < direction_count; ++i) f[static_cast<std::size_t>(i)] = equilibrium(i, 0, speed, 0, 0);
+    return f;
+}
+
+void fill_stream(const Grid& grid, Populations& populations, float speed) {
+    const auto f = stream_populations(speed);
+    const std::size_t pitch = grid.pitch(), lines = static_cast<std::size_t>(grid.ny) + 2;
+    for (int i = 0; i < direction_count; ++i) {
+        const float value = f[static_cast<std::size_t>(i)];
+        float* const p = populations.at(i);
+        p[-1] = value;
+        for (std::size_t r = 0; r < grid.allocated_rows(); ++r) {
+            const std::size_t line = r % lines, layer = r / lines;
+            const bool beside = line == 0 || line + 1 == lines ||
+                                (!grid.section && (layer == 0 || layer == static_cast<std::size_t>(grid.nz) + 1));
+            float* const row = p + r * pitch;
+            if (beside) std::fill(row, row + pitch, value);
+            row[pitch - 1] = value;
+        }
+    }
+}
+
+void close_row(const Grid& grid, Populations& populations, std::size_t row,
+               const std::array<float, direction_count>& stream) {
+    const std::size_t first = grid.row(row), last = first + static_cast<std::size_t>(grid.nx) - 1;
+    float excess = 0, mx = 0, my = 0, mz = 0;
+    for (int i = 0; i < direction_count; ++i) {
+        const Direction& c = directions[static_cast<std::size_t>(i)];
+        const float f = populations.at(i)[last];
+        excess += f;
+        mx += static_cast<float>(c.x) * f;
+        my += static_cast<float>(c.y) * f;
+        mz += static_cast<float>(c.z) * f;
+    }
+    const float inverse = 1 / (1 + excess);
+    const float ux = std::max(mx * inverse, 0.0f), uy = my * inverse, uz = mz * inverse;
+    excess *= 1 - outlet_restoring;
+    for (int i = 1; i < direction_count; ++i) {
+        const Direction& c = directions[static_cast<std::size_t>(i)];
+        if (c.x < 0) populations.at(i)[last + 1] = equilibrium(i, excess, ux, uy, uz);
+        if (c.x > 0) populations.at(i)[first + grid.pitch() - 1] = stream[static_cast<std::size_t>(i)];
+    }
+}
+
+std::vector<float> relaxation_times(const Grid& grid, double viscosity, double sponge) {
+    std::vector<float> times(grid.pitch());
+    const double base = 0.5 + 3 * viscosity;
+    for (std::size_t x = 0; x < times.size(); ++x) {
+        const double depth = std::clamp((static_cast<double>(x) - (grid.nx - sponge)) / sponge, 0.0, 1.0);
+        times[x] = static_cast<float>(base + std::max(0.0, 1 - base) * depth * depth);
+    }
+    return times;
+}
+
+}  // namespace frm::bake::flow

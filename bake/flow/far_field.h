@@ -1,0 +1,32 @@
+// What surrounds the box: the uniform stream ahead and beside it, an open end behind it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "bake/flow/lattice.h"
+
+namespace frm::bake::flow {
+
+/// Populations of the fluid at rest density in a stream of a given speed along x, less the fluid at rest.
+std::array<float, direction_count> stream_populations(float speed);
+
+/// Fills the ghosts that hold the stream: rows and layers beside the box and the inlet of every row.
+///
+/// Populations that enter are those of the undisturbed stream, those that leave are lost. To first order that is the
+/// characteristic condition, so sound leaves through inlet and sides; for the flow proper the sides are walls that move
+/// with the stream and give way a little.
+void fill_stream(const Grid& grid, Populations& populations, float speed);
+
+/// Puts back the two ghosts of a row after the collision has run over them: the inlet's holds the stream; the outlet's
+/// is the equilibrium of the last cell, its density drawn a little to the stream's so that the level of pressure cannot
+/// drift, its flow never inwards.
+void close_row(const Grid& grid, Populations& populations, std::size_t row,
+               const std::array<float, direction_count>& stream);
+
+/// Relaxation time for each cell of a row: the fluid's, and in the last `sponge` cells before the outlet rising to 1,
+/// where the wake dissolves before it meets the outlet.
+std::vector<float> relaxation_times(const Grid& grid, double viscosity, double sponge);
+
+}  // namespace frm::bake::flow

@@ -1,0 +1,267 @@
+// The flow solver against literature, against itself, and against bad input.
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bake/flow/flow.h"
+#include "tests/support/catch.h"
+#include "tests/support/shapes.h"
+
+using namespace frm;
+using namespace frm::bake;
+
+namespace {
+
+Regions one_region(const Surface& surface) {
+    Regions regions;
+    regions.region.assign(surface.triangles.size(), 0);
+    regions.count = 1;
+    return regions;
+}
+
+/// A unit stream of unit density: forces are then half the coefficient times the area.
+FlowCase unit_case(double reynolds, double cells, double start_up, double duration) {
+    FlowCase c;
+    c.direction = {1, 0, 0};
+    c.speed = 1;
+    c.density = 1;
+    c.viscosity = 1 / reynolds;
+    c.reference_length = 1;
+    c.cells_across = cells;
+    c.start_up = start_up;
+    c.duration = duration;
+    return c;
+}
+
+Vec3d mean(const std::vector<float>& values) {
+    Vec3d sum;
+    for (std::size_t i = 0; i < values.size(); ++i) sum[static_cast<int>(i % 3)] += static_cast<double>(values[i]);
+    return values.empty() ? sum : sum * (3.0 / static_cast<double>(values.size()));
+}
+
+/// Mean force on the whole body as coefficients on the projected area.
+struct Coefficients {
+    Vec3d total, pressure, friction;
+    explicit Coefficients(const FlowSeries& s, double density = 1, double speed = 1) {
+        const double scale = s.regions / (0.5 * density * speed * speed * s.plan.projected_area);
+        pressure = mean(s.pressure) * scale;
+        friction = mean(s.friction) * scale;
+        total = pressure + friction;
+    }
+};
+
+FlowSeries solve(const Surface& surface, const FlowCase& c) {
+    return solve_flow(surface, one_region(surface), c, nullptr);
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+std::string error_of(const Surface& surface, const FlowCase& c) {
+    try {
+        plan_flow(surface, c);
+    } catch (const BakeError& e) {
+        return e.what();
+    }
+    return {};
+}
+
+bool mentions(const std::string& text, const char* word) { return text.find(word) != std::string::npos; }
+
+}  // namespace
+
+// 14 cells over the diameter: 0.7 million cells, 2,000 steps, 5 s on two cores.
+TEST_CASE("a sphere at Reynolds number 100 has the drag of the literature", "[flow]") {
+    const Surface sphere = test::icosphere(0.5, 4);
+    const FlowSeries series = solve(sphere, unit_case(100, 14, 8, 4));
+    const Coefficients c(series);
+    CHECK(c.total.x == Approx(1.09).epsilon(0.10));
+    CHECK(std::abs(c.total.y) < 0.02);
+    CHECK(std::abs(c.total.z) < 0.02);
+    const double share = c.friction.x / c.total.x;
+    CHECK(share > 0.45);
+    CHECK(share < 0.61);
+    CHECK(series.plan.reynolds == Approx(100));
+    CHECK(series.plan.reynolds_solved == Approx(100));
+    CHECK(series.uncertainty < 0.02);
+    CHECK(length(mean(series.torque)) < 0.01);
+}
+
+TEST_CASE("a cylinder's section sheds at the right frequency", "[flow]") {
+    FlowCase c = unit_case(100, 12, 60, 30);
+    c.section = true;
+    const Surface cylinder = test::cylinder(0.5, 2, 96);
+    const FlowSeries series = solve(cylinder, c);
+    const Coefficients k(series);
+    CHECK(k.total.x == Approx(1.34).epsilon(0.08));
+    CHECK(k.total.z == 0);
+    int rises = 0;
+    double first = 0, last = 0;
+    for (std::uint32_t i = 1; i < series.samples; ++i) {
+        const std::size_t now = std::size_t{3} * i + 1, before = now - 3;
+        if (series.pressure[before] < 0 && series.pressure[now] >= 0) {
+            (rises == 0 ? first : last) = i * series.interval;
+            ++rises;
+        }
+    }
+    REQUIRE(rises > 2);
+    CHECK((rises - 1) / (last - first) == Approx(0.1645).epsilon(0.05));
+}
+
+TEST_CASE("the result does not depend on the number of threads", "[flow]") {
+    const Surface body = test::rotated(test::box({0.5, 1, 1.5}), {1, 2, 3}, 0.4);
+    Regions regions;
+    regions.count = 12;
+    for (std::uint32_t t = 0; t < 12; ++t) regions.region.push_back(t);
+    FlowCase c = unit_case(5000, 7, 2, 2);
+    c.threads = 1;
+    const FlowSeries one = solve_flow(body, regions, c, nullptr);
+    for (const int threads : {2, 3}) {
+        c.threads = threads;
+        const FlowSeries many = solve_flow(body, regions, c, nullptr);
+        CHECK(same_bits(one.pressure, many.pressure));
+        CHECK(same_bits(one.friction, many.friction));
+        CHECK(same_bits(one.torque, many.torque));
+        CHECK(one.uncertainty == many.uncertainty);
+    }
+}
+
+TEST_CASE("regions sum to the whole body", "[flow]") {
+    const Surface body = test::box({1, 1, 1});
+    Regions regions;
+    regions.count = 6;
+    for (std::uint32_t t = 0; t < 12; ++t) regions.region.push_back(t / 2);
+    const FlowCase c = unit_case(1000, 6, 3, 2);
+    const Coefficients whole(solve(body, c)), parts(solve_flow(body, regions, c, nullptr));
+    for (int i = 0; i < 3; ++i) CHECK(parts.total[i] == Approx(whole.total[i]).epsilon(1e-4).margin(1e-5));
+}
+
+TEST_CASE("the force turns with the body and the stream", "[flow]") {
+    const Surface body = test::box({0.4, 1, 1});
+    FlowCase c = unit_case(300, 9, 5, 3);
+    const Coefficients straight(solve(body, c));
+    const Vec3d axis{1, -2, 0.5};
+    c.direction = test::rotated({1, 0, 0}, axis, 0.7);
+    const Coefficients turned(solve(test::rotated(body, axis, 0.7), c));
+    const double along = dot(turned.total, c.direction);
+    CHECK(along == Approx(straight.total.x).epsilon(0.05));
+    CHECK(length(turned.total - c.direction * along) < 0.05 * along);
+}
+
+TEST_CASE("a symmetric box face-on has no lift, and a torque that follows its place", "[flow]") {
+    const FlowCase c = unit_case(200, 8, 6, 2);
+    const Coefficients middle(solve(test::box({1, 1, 1}), c));
+    CHECK(middle.total.x > 0.8);
+    CHECK(std::abs(middle.total.y) < 0.02 * middle.total.x);
+    CHECK(std::abs(middle.total.z) < 0.02 * middle.total.x);
+    const FlowSeries away = solve(test::moved(test::box({1, 1, 1}), {0, 2, 0}), c);
+    CHECK(mean(away.torque).z == Approx(-2 * (mean(away.pressure).x + mean(away.friction).x)).epsilon(0.02));
+}
+
+TEST_CASE("a sheet thinner than a cell stops the water", "[flow]") {
+    const FlowCase c = unit_case(1e4, 8, 6, 6);
+    const Surface sheet = test::box({0.01, 1, 1});
+    CHECK(mentions(plan_flow(sheet, c).warning, "thick"));
+    CHECK(Coefficients(solve(sheet, c)).total.x == Approx(1.17).epsilon(0.2));
+    // Oblique, so that it passes between the nodes at every distance.
+    const Coefficients oblique(solve(test::rotated(sheet, {0, 0, 1}, 0.5), c));
+    CHECK(oblique.total.x > 0.6);
+    CHECK(oblique.total.y / oblique.total.x == Approx(std::tan(0.5)).epsilon(0.15));
+}
+
+TEST_CASE("the plan says what a run takes", "[flow]") {
+    FlowCase c;
+    c.reference_length = 0;
+    const FlowPlan plan = plan_flow(test::box({1, 1, 2}), c);
+    CHECK(plan.projected_area == Approx(2).epsilon(0.01));
+    CHECK(plan.reference_length == Approx(std::sqrt(2.0)).epsilon(0.01));
+    CHECK(plan.cell == Approx(plan.reference_length / c.cells_across));
+    CHECK(plan.reynolds == Approx(c.speed * plan.reference_length / c.viscosity));
+    CHECK(plan.reynolds_solved < plan.reynolds);
+    CHECK(mentions(plan.warning, "Reynolds"));
+    CHECK(plan.blockage > 0.01);
+    CHECK(plan.blockage < 0.05);
+    CHECK(plan.bytes > plan.cells * 19 * 4 * 2);
+    CHECK(static_cast<double>(plan.steps) * plan.time_step ==
+          Approx((c.start_up + c.duration) * plan.reference_length / c.speed).epsilon(0.02));
+}
+
+TEST_CASE("what is wrong with a case is named", "[flow]") {
+    const Surface body = test::box({1, 1, 1});
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    const FlowCase good = unit_case(100, 8, 3, 3);
+    REQUIRE(error_of(body, good).empty());
+    const auto error_with = [&](auto change) {
+        FlowCase c = good;
+        change(c);
+        return error_of(body, c);
+    };
+    CHECK(mentions(error_with([&](FlowCase& c) { c.direction = {1, 1, 0}; }), "direction"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.direction.y = nan; }), "direction"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.speed = 0; }), "speed"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.viscosity = -1; }), "viscosity"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.density = infinity; }), "density"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.cells_across = 3; }), "cells_across"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.cells_across = 1e9; }), "cells_across"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.reference_length = -2; }), "reference_length"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.start_up = nan; }), "start_up"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.duration = 1e9; }), "duration"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.threads = -1; }), "threads"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.memory_limit = 1000; }), "memory_limit"));
+    CHECK(mentions(error_with([&](FlowCase& c) {
+                       c.reference_length = 1e-5;
+                       c.viscosity = 1e-7;
+                   }),
+                   "memory_limit"));
+    CHECK(mentions(error_with([&](FlowCase& c) {
+                       c.section = true;
+                       c.section_normal = {1, 0, 0};
+                   }),
+                   "section_normal"));
+    CHECK(mentions(error_with([&](FlowCase& c) {
+                       c.section = true;
+                       c.section_origin = {0, 0, 5};
+                   }),
+                   "section_origin"));
+    CHECK(mentions(error_with([&](FlowCase& c) {
+                       c.section = true;
+                       c.section_span = 0;
+                   }),
+                   "section_span"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.viscosity = 1e5; }), "Reynolds"));
+
+    Surface broken = body;
+    broken.triangles[3][1] = 99;
+    CHECK_FALSE(error_of(broken, good).empty());
+    broken = body;
+    broken.vertices[0].x = nan;
+    CHECK_FALSE(error_of(broken, good).empty());
+    CHECK_FALSE(error_of(Surface{}, good).empty());
+
+    Regions regions = one_region(body);
+    regions.region[5] = 1;
+    CHECK_THROWS_AS(solve_flow(body, regions, good, nullptr), BakeError);
+    regions.region.pop_back();
+    CHECK_THROWS_AS(solve_flow(body, regions, good, nullptr), BakeError);
+}
+
+TEST_CASE("progress is told, and can stop a run", "[flow]") {
+    const Surface body = test::box({1, 1, 1});
+    const FlowCase c = unit_case(100, 6, 1, 1);
+    double last = 0;
+    std::string note;
+    const auto watch = [&](double share, const std::string& text) {
+        CHECK(share > last);
+        last = share;
+        note = text;
+        return true;
+    };
+    solve_flow(body, one_region(body), c, watch);
+    CHECK(last == 1);
+    CHECK(mentions(note, "drag "));
+    const auto stop = [](double, const std::string&) { return false; };
+    CHECK_THROWS_AS(solve_flow(body, one_region(body), c, stop), FlowCancelled);
+}
