@@ -24,8 +24,10 @@ frm_status FRM_CALL frm_device_enumerate(frm_context context, const frm_device_d
     return with_context(context, [&](Context&) {
         require_pointer(count, "count");
         const frm_device_driver d = device::checked_driver(driver);
-        const frm_status status = d.enumerate(user, list, capacity, count);
+        std::uint32_t seen = 0;
+        const frm_status status = d.enumerate(user, list, capacity, &seen);
         if (status != FRM_OK) throw Error(FRM_ERROR_DEVICE, "the device's driver failed in enumerate: %s", frm_status_name(status));
+        *count = seen;
     });
 }
 
@@ -165,7 +167,7 @@ frm_status FRM_CALL frm_replay_get_body(frm_replay replay, uint32_t index, frm_b
 frm_status FRM_CALL frm_replay_get_map(frm_replay replay, uint32_t index, frm_map* map) {
     return with<Replay>(replay, [&](Context&, Replay& object) {
         require_pointer(map, "map");
-        if (object.map(index) == 0) throw Error(FRM_ERROR_STATE, "there is no map %u at this point of the recording", index);
+        if (object.map(index) == 0) throw Error(FRM_ERROR_ARGUMENT, "index: there is no map %u at this point of the recording", index);
         *map = object.map(index);
     });
 }

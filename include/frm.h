@@ -33,8 +33,8 @@
  * mesh file that was baked; wrenches and twists are about the body's origin, which is the mesh file's origin.
  *
  * Results. Every function returns an frm_status: FRM_OK (0), or a negative error after which nothing has changed
- * except the context's last-error text (frm_context_last_error). Results come through out pointers, which are
- * written only on success.
+ * except the context's last-error text (frm_context_last_error; functions of any thread write it). Results come
+ * through out pointers, which are written only on success.
  *
  * Handles are 64-bit values; 0 is none. A handle that is stale or of another type gives FRM_ERROR_HANDLE, never a
  * crash. Destroying an object destroys what was made in it: a context its maps, worlds, devices, recorders and
@@ -42,7 +42,8 @@
  *
  * Structs that may grow begin with struct_size. Fill a def with its _def_init, then change what you need; a NULL
  * def pointer means all defaults where the function says so. Set struct_size = sizeof of every struct that the
- * library fills. A struct larger than this library knows is accepted if what it does not know is zero.
+ * library fills. A struct larger than this library knows (up to 4096 bytes) is accepted if what it does not know is
+ * zero; otherwise FRM_ERROR_VERSION.
  *
  * Threads. Each function carries one tag:
  *   [any]      any thread, at any time, while the object exists
@@ -94,7 +95,7 @@ enum {
     FRM_ERROR_CORRUPT = -7,   /* a file's contents are damaged or are not what they claim */
     FRM_ERROR_CAPACITY = -8,  /* the caller's buffer is too small; the needed size was written */
     FRM_ERROR_LIMIT = -9,     /* too many objects, or a size beyond what this version takes */
-    FRM_ERROR_DEVICE = -10,   /* a device failed; its own message is in the last-error text */
+    FRM_ERROR_DEVICE = -10,   /* a device's driver failed; the text says in which call and with what status */
     FRM_ERROR_END = -11,      /* a recording has no more to give */
     FRM_ERROR_INTERNAL = -12  /* a defect in this library; please report it with the last-error text */
 };
@@ -124,7 +125,8 @@ typedef struct frm_position {
     double x, y, z; /* m */
 } frm_position;
 
-/* A rotation from the body's frame to the world's. Need not be exactly of length 1: it is normalised; zero is an error. */
+/* A rotation from the body's frame to the world's. Need not be exactly of length 1: it is normalised. Zero is an
+ * error. */
 typedef struct frm_quaternion {
     float x, y, z, w;
 } frm_quaternion;
@@ -300,6 +302,9 @@ FRM_API frm_status FRM_CALL frm_world_def_init(frm_world_def *def, uint64_t size
 /* Makes an empty world. def may be null. [owner] */
 FRM_API frm_status FRM_CALL frm_world_create(frm_context context, const frm_world_def *def, frm_world *world);
 
+/* The world's settings, as made. [owner] */
+FRM_API frm_status FRM_CALL frm_world_get_def(frm_world world, frm_world_def *def);
+
 /* Destroys a world with its water and bodies. FRM_ERROR_STATE while a recorder or replay uses it. [owner] */
 FRM_API frm_status FRM_CALL frm_world_destroy(frm_world world);
 
@@ -330,7 +335,8 @@ typedef struct frm_water_def {
     uint32_t nx;          /* cells, 8 to 8192; default 200 */
     uint32_t ny;          /* cells, 8 to 8192; default 200 */
     uint32_t border;      /* frm_border; default FRM_BORDER_ABSORBING */
-    uint32_t border_cells; /* width of the absorbing layer, 0 to 64 and under a third of nx and ny; default 16 */
+    uint32_t border_cells; /* width of the absorbing layer, 0 to 64 and under a third of nx and ny (small water: make
+                              it smaller); default 16 */
     float cell;           /* edge of a cell, 1e-4 to 1e3 m; default 0.025 */
     float depth;          /* d of Eq. 8: mean water depth, 1e-3 to 1e4 m; default 0.5. Waves run at sqrt(g d) */
     float snapshot_interval; /* seconds between snapshots, 0 (every tick) to 10; default 1/60 */
@@ -433,6 +439,9 @@ FRM_API frm_status FRM_CALL frm_body_def_init(frm_body_def *def, uint64_t size);
 /* Puts a body into a world. The map must be of the same context and stay open. [owner] */
 FRM_API frm_status FRM_CALL frm_body_create(frm_world world, const frm_body_def *def, frm_body *body);
 
+/* The body's map, scale, mass and centre of mass as made; pose and twist as last set. [owner] */
+FRM_API frm_status FRM_CALL frm_body_get_def(frm_body body, frm_body_def *def);
+
 /* Takes a body out. The water it displaced flows back. [owner] */
 FRM_API frm_status FRM_CALL frm_body_destroy(frm_body body);
 
@@ -501,8 +510,9 @@ typedef struct frm_device_driver {
     frm_status(FRM_CALL *info)(void *user, void *instance, frm_device_info *info);
     /* The grip is at its reference pose now. */
     frm_status(FRM_CALL *calibrate)(void *user, void *instance);
-    /* One cycle: takes the command, fills the state. Bounded time, no allocation. */
-    frm_status(FRM_CALL *exchange)(void *user, void *instance, const frm_device_command *command, frm_device_state *state);
+    /* One cycle: takes the command (never null), fills the state. Bounded time, no allocation. */
+    frm_status(FRM_CALL *exchange)(void *user, void *instance, const frm_device_command *command,
+                                   frm_device_state *state);
     /* Safe state at once: no force. */
     frm_status(FRM_CALL *stop)(void *user, void *instance);
 } frm_device_driver;
@@ -536,7 +546,8 @@ FRM_API frm_status FRM_CALL frm_device_get_info(frm_device device, frm_device_in
 FRM_API frm_status FRM_CALL frm_device_calibrate(frm_device device);
 
 /* One cycle. command may be null: no force. A command that is not finite is refused before the driver sees it, and a
- * state that is not finite is FRM_ERROR_DEVICE. Bounded as the driver is. [realtime] */
+ * state that is not finite is FRM_ERROR_DEVICE, after which the device has been stopped. Bounded as the driver
+ * is. [realtime] */
 FRM_API frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_device_command *command,
                                                 frm_device_state *state);
 
@@ -597,7 +608,8 @@ FRM_API frm_status FRM_CALL frm_recorder_add_device(frm_recorder recorder, frm_d
  * here: FRM_ERROR_FILE, and the .part file is left. The handle is stale afterwards in any case. [owner] */
 FRM_API frm_status FRM_CALL frm_recorder_close(frm_recorder recorder);
 
-/* Opens a recording and makes a world of its own to replay it in. [offline] */
+/* Opens a recording and makes a world of its own to replay it in, in this context's axes whatever the recording's
+ * were. It stands before the first tick then: the bodies and maps of the beginning are there. [offline] */
 FRM_API frm_status FRM_CALL frm_replay_open(frm_context context, const char *path, frm_replay *replay);
 
 /* Closes a replay and destroys its world and maps. [owner] */
@@ -619,7 +631,8 @@ FRM_API frm_status FRM_CALL frm_replay_get_water(frm_replay replay, frm_water *w
 /* Body `index` in order of creation; FRM_ERROR_STATE if it is not there now. [owner] */
 FRM_API frm_status FRM_CALL frm_replay_get_body(frm_replay replay, uint32_t index, frm_body *body);
 
-/* Map `index`, below frm_replay_info.maps, as it was in the recording. [owner] */
+/* Map `index`, below frm_replay_info.maps, in the order in which bodies first used them; FRM_ERROR_ARGUMENT if it has
+ * not been used yet. [owner] */
 FRM_API frm_status FRM_CALL frm_replay_get_map(frm_replay replay, uint32_t index, frm_map *map);
 
 #ifdef __cplusplus

@@ -22,6 +22,14 @@ inline void require_range(double value, double low, double high, const char* nam
         throw Error(FRM_ERROR_ARGUMENT, "%s = %g is not within %g to %g", name, value, low, high);
 }
 
+/// What a later version has beyond our struct must be zero: we would pass over it.
+template <typename T>
+void require_known(const T* value, const char* name) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(value);
+    for (std::size_t i = sizeof(T); i < value->struct_size; ++i)
+        if (bytes[i] != 0) throw Error(FRM_ERROR_VERSION, "%s uses a field that this library does not know", name);
+}
+
 template <typename T>
 void require_size(const T* value, const char* name) {
     if (value->struct_size < sizeof(std::uint32_t) || value->struct_size > largest_struct)
@@ -31,9 +39,10 @@ void require_size(const T* value, const char* name) {
 /// Fills a def, never past the caller's size.
 template <typename T>
 frm_status init_def(T* def, std::uint64_t size, T defaults) {
-    if (!def || size < sizeof(std::uint32_t)) return FRM_ERROR_ARGUMENT;
+    if (!def || size < sizeof(std::uint32_t) || size > largest_struct) return FRM_ERROR_ARGUMENT;
     const std::size_t known = size < sizeof(T) ? static_cast<std::size_t>(size) : sizeof(T);
-    defaults.struct_size = static_cast<std::uint32_t>(known);
+    defaults.struct_size = static_cast<std::uint32_t>(size);
+    std::memset(static_cast<void*>(def), 0, static_cast<std::size_t>(size));
     std::memcpy(def, &defaults, known);
     return FRM_OK;
 }
@@ -46,9 +55,7 @@ T read_def(const T* def, T defaults, const char* name) {
     require_size(def, name);
     const std::size_t known = def->struct_size < sizeof(T) ? def->struct_size : sizeof(T);
     std::memcpy(&defaults, def, known);
-    const auto* bytes = reinterpret_cast<const unsigned char*>(def);
-    for (std::size_t i = sizeof(T); i < def->struct_size; ++i)
-        if (bytes[i] != 0) throw Error(FRM_ERROR_VERSION, "%s uses a field that this library does not know", name);
+    require_known(def, name);
     defaults.struct_size = sizeof(T);
     return defaults;
 }
@@ -66,6 +73,7 @@ template <typename T>
 void require_out(const T* out, const char* name) {
     require_pointer(out, name);
     require_size(out, name);
+    require_known(out, name);
 }
 
 /// The two-call rule for text.

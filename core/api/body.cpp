@@ -56,6 +56,21 @@ frm_status FRM_CALL frm_body_create(frm_world world, const frm_body_def* def, fr
     });
 }
 
+frm_status FRM_CALL frm_body_get_def(frm_body body, frm_body_def* def) {
+    return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
+        require_out(def, "def");
+        const BodyDef& d = object.body.def;
+        frm_body_def out{};
+        out.scale = d.scale;
+        out.map = c.find_handle(Kind::map, [&](const Object& o) { return static_cast<const MapObject&>(o).map == d.map; });
+        out.mass = d.mass;
+        out.centre_of_mass = c.axes().body_out(d.centre_of_mass);
+        out.pose = c.axes().pose_out(d.pose);
+        out.twist = c.axes().twist_out(d.twist);
+        write_struct(def, out);
+    });
+}
+
 frm_status FRM_CALL frm_body_destroy(frm_body body) {
     return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
         require_changeable(object.world);

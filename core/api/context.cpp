@@ -150,12 +150,6 @@ void Context::remove(std::uint64_t handle) {
     s.owner.reset();
 }
 
-std::uint64_t Context::handle_of(const Object* object) const {
-    for (std::uint32_t i = 0; i < slots_; ++i)
-        if (slot(i)->object.load() == object) return slot(i)->handle.load();
-    return 0;
-}
-
 void Context::fail(const char* text) {
     const std::lock_guard<std::mutex> lock(error_lock_);
     std::snprintf(error_, sizeof error_, "%s", text);

@@ -57,8 +57,16 @@ public:
     Object* find(std::uint64_t handle, Kind kind) const;
     /// Ends an object and its children.
     void remove(std::uint64_t handle);
-    /// The handle of an object that is known to be there; 0 if it is not.
-    std::uint64_t handle_of(const Object* object) const;
+    /// The handle of the first object of a kind that `is` the one; 0 if none is.
+    template <typename Predicate>
+    std::uint64_t find_handle(Kind kind, Predicate&& is) const {
+        for (std::uint32_t i = 0; i < slots_; ++i) {
+            const std::uint64_t handle = slot(i)->handle.load();
+            const Object* object = find(handle, kind);
+            if (object && is(*object)) return handle;
+        }
+        return 0;
+    }
 
     template <typename T, typename... Arguments>
     std::shared_ptr<T> make(Arguments&&... arguments) {

@@ -48,6 +48,21 @@ frm_status FRM_CALL frm_world_create(frm_context context, const frm_world_def* d
     });
 }
 
+frm_status FRM_CALL frm_world_get_def(frm_world world, frm_world_def* def) {
+    return with<WorldObject>(world, [&](Context&, WorldObject& object) {
+        require_out(def, "def");
+        const WorldDef& d = object.world.def();
+        frm_world_def out{};
+        out.model = d.model;
+        out.surface = d.everywhere ? FRM_SURFACE_NONE : FRM_SURFACE_FLAT;
+        out.gravity = d.fluid.gravity;
+        out.density = d.fluid.density;
+        out.viscosity = d.fluid.viscosity;
+        out.level = d.level;
+        write_struct(def, out);
+    });
+}
+
 frm_status FRM_CALL frm_world_destroy(frm_world world) {
     return with<WorldObject>(world, [&](Context& c, WorldObject& object) {
         if (object.users > 0 || object.replayed) throw Error(FRM_ERROR_STATE, "a recorder or a replay still uses this world");

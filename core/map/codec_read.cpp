@@ -50,7 +50,7 @@ private:
         map_.content_hash = reader_.u64();
         if (reader_.u64() != file_size) throw Error(FRM_ERROR_CORRUPT, "map: the file is cut off or has grown");
         const std::uint32_t chunks = reader_.u32();
-        reader_.u32();
+        if (reader_.u32() != 0) throw Error(FRM_ERROR_CORRUPT, "map: the header's reserved field is not 0");
         const std::uint8_t* body = reader_.take(0);
         if (fnv1a(body, reader_.left()) != map_.content_hash)
             throw Error(FRM_ERROR_CORRUPT, "map: the content hash does not match: the file is damaged");

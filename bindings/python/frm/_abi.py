@@ -321,6 +321,7 @@ FUNCTIONS = {
 
     "frm_world_def_init": (frm_status, (POINTER(WorldDef), c_uint64)),
     "frm_world_create": (frm_status, (frm_context, POINTER(WorldDef), _handle)),
+    "frm_world_get_def": (frm_status, (frm_world, POINTER(WorldDef))),
     "frm_world_destroy": (frm_status, (frm_world,)),
     "frm_world_tick": (frm_status, (frm_world, c_float)),
     "frm_world_get_stats": (frm_status, (frm_world, POINTER(WorldStats))),
@@ -338,6 +339,7 @@ FUNCTIONS = {
 
     "frm_body_def_init": (frm_status, (POINTER(BodyDef), c_uint64)),
     "frm_body_create": (frm_status, (frm_world, POINTER(BodyDef), _handle)),
+    "frm_body_get_def": (frm_status, (frm_body, POINTER(BodyDef))),
     "frm_body_destroy": (frm_status, (frm_body,)),
     "frm_body_set_motion": (frm_status, (frm_body, POINTER(Pose), POINTER(Twist))),
     "frm_body_get_forces": (frm_status, (frm_body, POINTER(Forces))),

@@ -54,6 +54,10 @@ class World(Object):
         definition = definition_of(WorldDef, lib.frm_world_def_init, "World", options)
         super().__init__(context, context._made(lib.frm_world_create, context.handle, byref(definition)))
 
+    def definition(self) -> WorldDef:
+        """The world's settings, as made (frm_world_get_def)."""
+        return self._filled(WorldDef, self._lib.frm_world_get_def)
+
     def tick(self, dt: float) -> None:
         """Advances the world by dt seconds, 1e-6 to 0.1."""
         if status := self._lib.frm_world_tick(self.handle, dt):
@@ -165,6 +169,10 @@ class Body(Object):
         twist = None if twist is None else byref(_abi.convert(Twist, twist))
         if status := self._lib.frm_body_set_motion(self.handle, byref(pose), twist):
             raise self._error(status)
+
+    def definition(self) -> BodyDef:
+        """Map, scale, mass, centre of mass as made; pose and twist as last set (frm_body_get_def)."""
+        return self._filled(BodyDef, self._lib.frm_body_get_def)
 
     def forces(self) -> Forces:
         """The wrenches of the last tick, N and N m about the body's origin."""

@@ -29,6 +29,7 @@ static frm_status use(const void *def) {
     return status;
 }
 
+static frm_status fill_def(void *def) { return frm_body_get_def(f.body, (frm_body_def *)def); }
 static frm_status fill_forces(void *forces) { return frm_body_get_forces(f.body, (frm_forces *)forces); }
 static frm_status fill_state(void *state) { return frm_body_get_state(f.body, (frm_body_state *)state); }
 
@@ -185,8 +186,15 @@ static void sources(void) {
 }
 
 void call_body(void) {
+    frm_body_def def = {sizeof def};
     check_def("frm_body_def", sizeof(frm_body_def), init, use);
     bad_defs();
+    check_filled("frm_body_def", sizeof(frm_body_def), fill_def);
+    OK(frm_body_get_def(f.body, &def));
+    CHECK(def.map == f.map && def.scale > 0.0f && def.pose.rotation.w != 0.0f);
+    REFUSED(FRM_ERROR_ARGUMENT, "def", frm_body_get_def(f.body, NULL));
+    REFUSED_HANDLES(f.stale_body, f.world, frm_body_get_def(h, &def));
+
     check_filled("frm_forces", sizeof(frm_forces), fill_forces);
     check_filled("frm_body_state", sizeof(frm_body_state), fill_state);
     motion();

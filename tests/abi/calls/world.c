@@ -20,6 +20,7 @@ static frm_status use(const void *def) {
     return status;
 }
 
+static frm_status fill_def(void *def) { return frm_world_get_def(f.world, (frm_world_def *)def); }
 static frm_status fill_stats(void *stats) { return frm_world_get_stats(f.world, (frm_world_stats *)stats); }
 
 static void bad_defs(void) {
@@ -148,6 +149,7 @@ static void floating_point_modes(void) {
 }
 
 void call_world(void) {
+    frm_world_def def = {sizeof def};
     frm_world world = 42;
     frm_world_stats stats = {sizeof stats};
     uint64_t hash = 42;
@@ -155,6 +157,12 @@ void call_world(void) {
     bad_defs();
     REFUSED_HANDLES(f.stale_context, f.map, frm_world_create(h, NULL, &world));
     CHECK(world == 42);
+
+    check_filled("frm_world_def", sizeof(frm_world_def), fill_def);
+    OK(frm_world_get_def(f.world, &def));
+    CHECK(def.model == FRM_MODEL_DEFAULT && def.surface == FRM_SURFACE_FLAT && def.density == 1000.0f && def.level == 0.0);
+    REFUSED(FRM_ERROR_ARGUMENT, "def", frm_world_get_def(f.world, NULL));
+    REFUSED_HANDLES(f.stale_world, f.water, frm_world_get_def(h, &def));
 
     check_filled("frm_world_stats", sizeof(frm_world_stats), fill_stats);
     ticks();

@@ -1,0 +1,80 @@
+#include <cmath>
+
+#include "bake/series/periodic.h"
+#include "bake/series/spectrum.h"
+#include "tests/support/catch.h"
+
+using namespace frm::bake;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+std::vector<float> sine(std::size_t samples, double cycles_per_sample, double amplitude, double mean = 0, double slope = 0) {
+    std::vector<float> s;
+    for (std::size_t i = 0; i < samples; ++i)
+        s.push_back(static_cast<float>(mean + slope * static_cast<double>(i) + amplitude * std::sin(2 * pi * cycles_per_sample * static_cast<double>(i))));
+    return s;
+}
+
+double rms(const std::vector<float>& s) {
+    double sum = 0;
+    for (const float v : s) sum += static_cast<double>(v) * static_cast<double>(v);
+    return std::sqrt(sum / static_cast<double>(s.size()));
+}
+
+}  // namespace
+
+TEST_CASE("a signal that is periodic already stays as it is", "[series]") {
+    const auto signal = sine(256, 4.0 / 256, 2, 5);
+    const PeriodicSeries p = make_periodic(signal, {256, 64, 16, 0});
+    CHECK(p.mean == Approx(5));
+    for (std::size_t i = 0; i < 64; ++i)
+        CHECK(static_cast<double>(p.fluctuation[i]) == Approx(2 * std::sin(2 * pi * 4 * static_cast<double>(i) / 64)).margin(1e-4));
+}
+
+TEST_CASE("the seam is as smooth as the rest", "[series]") {
+    // Seven and a half cycles with a drift: a bare period would jump by an amplitude and more.
+    const auto signal = sine(320, 7.5 / 256, 1, 0, 0.003);
+    const PeriodicSeries p = make_periodic(signal, {256, 128, 40, 0});
+    double largest = 0;
+    for (std::size_t i = 0; i + 1 < 128; ++i)
+        largest = std::max(largest, std::fabs(static_cast<double>(p.fluctuation[i + 1] - p.fluctuation[i])));
+    const double seam = std::fabs(static_cast<double>(p.fluctuation[0] - p.fluctuation[127]));
+    CHECK(seam <= largest);
+    CHECK(largest < 1.5 * 2 * pi * 7.5 / 128);
+    // The fade costs little of the amplitude.
+    CHECK(rms(p.fluctuation) > 0.85 * std::sqrt(0.5));
+    CHECK(rms(p.fluctuation) < 1.15 * std::sqrt(0.5) + 0.2);
+}
+
+TEST_CASE("harmonics above the highest and below the threshold are gone", "[series]") {
+    std::vector<float> signal = sine(256, 4.0 / 256, 1);
+    const auto weak = sine(256, 9.0 / 256, 0.01), fast = sine(256, 60.0 / 256, 1);
+    for (std::size_t i = 0; i < 256; ++i) signal[i] += weak[i] + fast[i];
+    const PeriodicSeries p = make_periodic(signal, {256, 64, 20, 0.02});
+    CHECK(rms(p.fluctuation) == Approx(std::sqrt(0.5)).epsilon(1e-4));
+    const PeriodicSeries with = make_periodic(signal, {256, 64, 20, 0.005});
+    CHECK(rms(with.fluctuation) > rms(p.fluctuation) * 1.00002);
+}
+
+TEST_CASE("a run that is too short is refused", "[series]") {
+    CHECK_THROWS_AS(make_periodic(sine(100, 0.1, 1), {256, 64, 16, 0}), BakeError);
+    CHECK_THROWS_AS(make_periodic(sine(256, 0.1, 1), {256, 64, 32, 0}), BakeError);
+}
+
+TEST_CASE("good lengths are even and smooth", "[series]") {
+    CHECK(good_length(34) == 36);
+    CHECK(good_length(82) == 90);
+    CHECK(good_length(64) == 64);
+    CHECK(good_length(1) == 2);
+}
+
+TEST_CASE("the strongest frequency is found between the bins", "[series]") {
+    for (const double cycles : {5.0, 7.3, 11.5, 20.21}) {
+        const Peak peak = strongest_peak(sine(512, cycles / 512, 0.3, 4), 0.01);
+        CHECK(peak.frequency == Approx(cycles / 5.12).epsilon(0.003));
+        CHECK(peak.amplitude == Approx(0.3).epsilon(0.16));  // a Hann window's scalloping, at most 15 %
+    }
+    CHECK(strongest_peak(std::vector<float>(512, 3.0f), 0.01).frequency == 0);
+}

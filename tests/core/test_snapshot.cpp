@@ -1,0 +1,53 @@
+#include <atomic>
+#include <thread>
+
+#include "core/water/snapshot.h"
+#include "tests/support/catch.h"
+#include "tests/support/worlds.h"
+
+using namespace frm;
+
+TEST_CASE("readers always see one whole snapshot while another thread publishes", "[snapshot]") {
+    Field field({32, 32, 0.1f, 1.0f, Border::reflecting, 0}, test::memory());
+    SnapshotExchange exchange(field.cells(), test::memory());
+    std::atomic<bool> stop{false};
+    std::atomic<int> torn{0}, reads{0};
+    const auto reader = [&] {
+        std::uint64_t last = 0;
+        while (!stop.load()) {
+            exchange.read([&](const WaterSnapshot& s) {
+                for (const float h : s.height)
+                    if (h != static_cast<float>(s.tick)) ++torn;
+                if (s.tick < last) ++torn;
+                last = s.tick;
+                ++reads;
+            });
+        }
+    };
+    std::thread one(reader), two(reader);
+    std::uint64_t published = 0;
+    for (std::uint64_t tick = 1; tick <= 20000; ++tick) {
+        for (std::size_t i = 0; i < field.cells(); ++i) field.height()[i] = static_cast<float>(tick);
+        published += exchange.publish(field, tick, 0);
+    }
+    while (reads.load() < 2) std::this_thread::yield();
+    stop = true;
+    one.join();
+    two.join();
+    CHECK(torn.load() == 0);
+    // Two readers hold two slots at most, and one is the newest: there is always a fourth.
+    CHECK(published == 20000);
+}
+
+TEST_CASE("face velocities are averaged to the cells' centres", "[snapshot]") {
+    Field field({8, 8, 0.1f, 1.0f, Border::reflecting, 0}, test::memory());
+    field.velocity_x()[2 * 9 + 3] = 4;
+    field.velocity_y()[3 * 8 + 5] = 2;
+    std::vector<float> u(64), v(64);
+    copy_to_centres(field, nullptr, u.data(), v.data());
+    CHECK(u[2 * 8 + 2] == 2);
+    CHECK(u[2 * 8 + 3] == 2);
+    CHECK(u[2 * 8 + 4] == 0);
+    CHECK(v[2 * 8 + 5] == 1);
+    CHECK(v[3 * 8 + 5] == 1);
+}

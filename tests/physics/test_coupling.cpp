@@ -1,0 +1,179 @@
+// Bodies and water: what each does to the other (section 6.3, and the repairs).
+#include <cmath>
+
+#include "tests/support/catch.h"
+#include "tests/support/worlds.h"
+
+using namespace frm;
+using test::body_of;
+
+namespace {
+
+std::shared_ptr<const Map> slab_map() {
+    static const auto map = test::map_of(test::fine_box({0.3, 0.3, 0.1}, 0.05), 18, 2, 32);
+    return map;
+}
+
+double volume(const Field& f) {
+    double sum = 0;
+    for (std::size_t i = 0; i < f.cells(); ++i) sum += static_cast<double>(f.height()[i]);
+    return sum * static_cast<double>(f.def().cell * f.def().cell);
+}
+
+float largest(const Field& f) {
+    float most = 0;
+    for (std::size_t i = 0; i < f.cells(); ++i) most = std::fmax(most, std::fabs(f.height()[i]));
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("a body that goes in raises a closed basin by its volume", "[coupling]") {
+    World world = test::world_of();
+    Water& water = world.create_water(test::water_of(96, 0.025f, 0.6f, Border::reflecting));
+    Body& body = world.create_body(body_of(slab_map(), {0, 0, 0.3}));
+    world.tick(0.002f);
+    CHECK(volume(water.field) == 0);
+    // Down to where the slab is half in: 0.3 x 0.3 x 0.05.
+    for (int t = 0; t <= 300; ++t) {
+        const double z = 0.3 - 0.001 * t;
+        world.set_motion(body, {{0, 0, z}, {}}, {{0, 0, -0.5f}, {}});
+        world.tick(0.002f);
+    }
+    CHECK(volume(water.field) == Approx(0.0045).epsilon(0.002));
+    const Vec3f up = body.forces.buoyancy.force;
+    CHECK(up.z > 0);
+    world.destroy_body(body);
+    CHECK(std::fabs(volume(water.field)) < 1e-6);
+}
+
+TEST_CASE("a body at rest leaves the water at rest, and ripples do not grow at it", "[coupling]") {
+    for (const double z : {0.0, -0.03, -0.2}) {
+        World world = test::world_of();
+        Water& water = world.create_water(test::water_of(128, 0.0125f, 0.4f));
+        world.create_body(body_of(slab_map(), {0, 0, z}));
+        for (int t = 0; t < 50; ++t) world.tick(0.002f);
+        CHECK(largest(water.field) == 0);
+        std::vector<float> h(128 * 128, 0.0f);
+        for (int j = 0; j < 128; ++j)
+            for (int i = 0; i < 128; ++i) h[static_cast<std::size_t>(j * 128 + i)] = 0.001f * std::exp(-0.06f * static_cast<float>((i - 90) * (i - 90) + (j - 64) * (j - 64)));
+        world.set_height(h.data());
+        for (int t = 0; t < 1000; ++t) world.tick(0.002f);
+        CHECK(largest(water.field) < 1e-4f);
+    }
+}
+
+TEST_CASE("towed under calm water a body feels what its map says", "[coupling]") {
+    const float speed = 0.4f;
+    const auto towed = [&](std::uint32_t model, double z, bool water) {
+        WorldDef def;
+        def.model = model;
+        World world = test::world_of(def);
+        if (water) world.create_water(test::water_of(200, 0.05f, 1.0f));
+        Body& body = world.create_body(body_of(slab_map(), {-2, 0, z}));
+        Vec3d mean;
+        for (int t = 0; t < 4000; ++t) {
+            const double x = -2 + static_cast<double>(speed) * 0.002 * t;
+            world.set_motion(body, {{x, 0, z}, {}}, {{speed, 0, 0}, {}});
+            world.tick(0.002f);
+            if (t >= 2000) mean += Vec3d(body.forces.total.force) / 2000.0;
+        }
+        return mean;
+    };
+    const Vec3d deep = towed(model_displacement | model_own_waves, -0.8, true), map = towed(model_displacement | model_own_waves, -0.8, false);
+    CHECK(std::fabs(deep.x - map.x) < 0.01 * std::fabs(map.x));
+    CHECK(std::fabs(deep.y - map.y) < 0.01 * std::fabs(map.x));
+    // The paper's rule to the letter drags the water along, and feels next to nothing.
+    const Vec3d paper = towed(model_paper, -0.8, true);
+    CHECK(std::fabs(paper.x) < 0.2 * std::fabs(map.x));
+    // The repair of what is felt mends most of that rule too; what it does not see is the current that it leaves beyond the window.
+    const Vec3d mended = towed(model_own_waves, -0.8, true);
+    CHECK(mended.x == Approx(map.x).epsilon(0.15));
+}
+
+TEST_CASE("another body's waves are felt in full", "[coupling]") {
+    const auto felt = [](bool own_waves) {
+        WorldDef def;
+        def.model = model_displacement | (own_waves ? model_own_waves : 0u);
+        World world = test::world_of(def);
+        world.create_water(test::water_of(200, 0.025f, 0.5f));
+        Body& pusher = world.create_body(body_of(slab_map(), {-1.5, 0, 0}));
+        Body& still = world.create_body(body_of(slab_map(), {1.5, 0, -0.1}));
+        float most = 0;
+        for (int t = 0; t < 800; ++t) {
+            const double phase = 0.002 * t * 8;
+            world.set_motion(pusher, {{-1.5, 0, 0.03 * std::sin(phase)}, {}}, {{0, 0, static_cast<float>(0.24 * std::cos(phase))}, {}});
+            world.tick(0.002f);
+            most = std::fmax(most, length(still.sources[0].relative_velocity));
+        }
+        return most;
+    };
+    const float with = felt(true), without = felt(false);
+    CHECK(with > 1e-3f);
+    CHECK(with == Approx(without).epsilon(0.01));
+}
+
+TEST_CASE("a body carried along by the water feels no resistance", "[coupling]") {
+    // A uniform current: the field's velocity everywhere, and a body that moves with it.
+    World world = test::world_of();
+    Water& water = world.create_water(test::water_of(160, 0.05f, 1.0f, Border::reflecting));
+    const std::size_t faces = 161 * 160;
+    for (std::size_t i = 0; i < faces; ++i) water.field.velocity_x()[i] = 0.2f;
+    Body& body = world.create_body(body_of(slab_map(), {0, 0, -0.5}, {}, {{0.2f, 0, 0}, {}}));
+    world.tick(0.002f);
+    CHECK(length(body.forces.pressure.force) < 1e-6f);
+    CHECK(length(body.forces.friction.force) < 1e-6f);
+}
+
+TEST_CASE("a rising body's pressure lifts the water above it", "[coupling]") {
+    WorldDef def;
+    def.model = model_paper;
+    World world = test::world_of(def);
+    Water& water = world.create_water(test::water_of(96, 0.025f, 0.5f));
+    Body& body = world.create_body(body_of(slab_map(), {0, 0, -0.2}));
+    for (int t = 0; t < 40; ++t) {
+        world.set_motion(body, {{0, 0, -0.2}, {}}, {{0, 0, 0.5f}, {}});
+        world.tick(0.002f);
+    }
+    const float middle = water.field.height()[48 * 96 + 48];
+    CHECK(middle > 1e-5f);
+    // And what the water carries is what the upper sources press: p = -f . n / area, about 3 Pa of rho/2 u^2 here.
+    CHECK(middle < 0.5f * 1000 * 0.25f / (1000 * 9.8f) * 2);
+}
+
+TEST_CASE("the paper's rule gives the water inside a body the body's velocity", "[coupling]") {
+    WorldDef def;
+    def.model = model_paper;
+    World world = test::world_of(def);
+    Water& water = world.create_water(test::water_of(96, 0.025f, 0.5f));
+    Body& body = world.create_body(body_of(slab_map(), {0, 0, -0.1}, {}, {{0.3f, -0.2f, 0}, {0, 0, 1}}));
+    world.tick(0.002f);
+    const GridOrigin middle = water.origin_at(0.05, 0.02);
+    float u = 0, v = 0;
+    water.field.velocity_at(middle, 0, 0, u, v);
+    CHECK(u == Approx(0.3 - 1 * 0.02).epsilon(0.03));
+    CHECK(v == Approx(-0.2 + 1 * 0.05).epsilon(0.03));
+    CHECK(body.forces.total.force.x < 0);
+}
+
+TEST_CASE("ticks are the same bits from run to run, whatever has been before", "[coupling]") {
+    const auto run = [](int others) {
+        std::vector<std::unique_ptr<World>> worlds;
+        for (int i = 0; i < others; ++i) {
+            worlds.push_back(std::make_unique<World>(WorldDef(), 1, test::memory()));
+            worlds.back()->create_water(test::water_of(64, 0.05f, 0.5f));
+        }
+        World world = test::world_of();
+        world.create_water(test::water_of(100, 0.025f, 0.5f));
+        Body& one = world.create_body(body_of(slab_map(), {-0.4, 0, 0}));
+        Body& two = world.create_body(body_of(slab_map(), {0.4, 0.1, -0.05}));
+        for (int t = 0; t < 200; ++t) {
+            const double phase = 0.02 * t;
+            world.set_motion(one, {{-0.4 + 0.2 * std::sin(phase), 0, 0.05 * std::cos(phase)}, test::turned({1, 1, 0}, 0.3)}, {{0.5f, 0, 0.1f}, {0.2f, 0, 1}});
+            world.set_motion(two, {{0.4, 0.1 * std::cos(phase), -0.05}, {}}, {{0, -0.3f, 0}, {}});
+            world.tick(0.002f);
+        }
+        return world.hash();
+    };
+    CHECK(run(0) == run(3));
+}

@@ -1,0 +1,144 @@
+// Eq. 6: its three scalings, torque, and the similarity laws.
+#include <cmath>
+
+#include "core/map/lookup.h"
+#include "tests/support/catch.h"
+#include "tests/support/worlds.h"
+
+using namespace frm;
+using test::body_of;
+
+namespace {
+
+const std::shared_ptr<const Map>& box_map() {
+    static const auto map = test::map_of(test::fine_box({0.2, 0.1, 0.3}, 0.08), 12, 3, 64);
+    return map;
+}
+
+struct Steady {
+    Vec3d pressure, friction;
+    float map_time;
+};
+
+/// Mean forces over whole periods of the map, deep in a fluid without a surface.
+Steady steady(const Vec3f& velocity, float dt, int ticks, float scale = 1, const Fluid& fluid = {9.80665f, 1000, 1e-6f}) {
+    WorldDef def;
+    def.everywhere = true;
+    def.fluid = fluid;
+    World world = test::world_of(def);
+    BodyDef body_def = body_of(box_map(), {}, {}, {velocity, {}});
+    body_def.scale = scale;
+    Body& body = world.create_body(body_def);
+    Steady out{};
+    for (int i = 0; i < ticks; ++i) {
+        world.tick(dt);
+        out.pressure += Vec3d(body.forces.pressure.force) / static_cast<double>(ticks);
+        out.friction += Vec3d(body.forces.friction.force) / static_cast<double>(ticks);
+    }
+    out.map_time = body.sources[0].map_time;
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("pressure goes with the square of the speed, friction with the speed, map time with the speed", "[resistance]") {
+    const float u0 = box_map()->facts.base_speed, period = box_map()->facts.period;
+    const int ticks = 256;
+    const Vec3f e(0.6f, -0.64f, 0.48f);
+    const Steady base = steady(e * u0, period / ticks, ticks);
+    for (const float ratio : {0.1f, 0.5f, 2.0f, 7.0f}) {
+        // One period of the map at the other speed takes 1 / ratio of the time.
+        const Steady other = steady(e * (u0 * ratio), period / ticks / ratio, ticks);
+        const double r = static_cast<double>(ratio);
+        CHECK(length(other.pressure - base.pressure * (r * r)) < 1e-5 * r * r * length(base.pressure));
+        CHECK(length(other.friction - base.friction * r) < 1e-5 * r * length(base.friction));
+        const float apart = std::fabs(other.map_time - base.map_time);
+        CHECK(std::fmin(apart, period - apart) < 1e-3f * period);
+    }
+    const Steady half = steady(e * u0, period / ticks, ticks / 2);
+    CHECK(half.map_time == Approx(period / 2).epsilon(1e-4));
+}
+
+TEST_CASE("the force is the map's own along a baked direction", "[resistance]") {
+    const Map& map = *box_map();
+    const std::uint32_t d = 17;
+    const Vec3d e = map.directions.direction(d);
+    // The water goes along e past a body that moves along -e.
+    const Steady s = steady(Vec3f(e) * -map.facts.base_speed, map.facts.period / 256, 256);
+    Vec3d expected;
+    for (std::uint32_t l = 0; l < map.source_count(); ++l) expected += Vec3d(map.mean[d * map.source_count() + l].pressure);
+    CHECK(length(s.pressure - expected) < 1e-4 * length(expected));
+    CHECK(dot(s.pressure, e) > 0);
+}
+
+TEST_CASE("another size, density and viscosity follow the similarity laws", "[resistance]") {
+    const float u0 = box_map()->facts.base_speed, period = box_map()->facts.period;
+    const Vec3f v = Vec3f(0.2f, 0.9f, 0.1f) * u0;
+    const Steady base = steady(v, period / 256, 256);
+    const Steady large = steady(v, period / 256 * 3, 256, 3);  // the same part of the map takes three times as long
+    CHECK(length(large.pressure - base.pressure * 9.0) < 1e-5 * 9 * length(base.pressure));
+    CHECK(length(large.friction - base.friction * 3.0) < 1e-5 * 3 * length(base.friction));
+    const Steady heavy = steady(v, period / 256, 256, 1, {9.80665f, 1250, 4e-6f});
+    CHECK(length(heavy.pressure - base.pressure * 1.25) < 1e-5 * length(base.pressure));
+    CHECK(length(heavy.friction - base.friction * 5.0) < 1e-5 * 5 * length(base.friction));
+}
+
+TEST_CASE("torque is about the body's origin", "[resistance]") {
+    WorldDef def;
+    def.everywhere = true;
+    World world = test::world_of(def);
+    const Quat<float> q = test::turned({1, 2, -1}, 1.1);
+    Body& body = world.create_body(body_of(box_map(), {3, 4, 5}, q, {{0.4f, 0.1f, -0.3f}, {0.5f, -0.2f, 0.9f}}));
+    world.tick(0.002f);
+    const Rotation<double> r(Quat<double>{static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z), static_cast<double>(q.w)});
+    Vec3d torque, force;
+    for (std::size_t l = 0; l < body.sources.size(); ++l) {
+        const Vec3d f = Vec3d(body.sources[l].pressure);
+        force += f;
+        torque += cross(r.to_world(Vec3d(box_map()->sources[l].position)), f);
+    }
+    CHECK(length(Vec3d(body.forces.pressure.force) - force) < 1e-5 * length(force));
+    CHECK(length(Vec3d(body.forces.pressure.torque) - torque) < 1e-5 * length(torque));
+    CHECK(length(torque) > 0);
+}
+
+TEST_CASE("a source's velocity is the body's motion at the source", "[resistance]") {
+    WorldDef def;
+    def.everywhere = true;
+    World world = test::world_of(def);
+    const Vec3f omega(0.3f, -1.2f, 0.8f);
+    Body& body = world.create_body(body_of(box_map(), {}, {}, {{}, omega}));
+    world.tick(0.002f);
+    for (std::size_t l = 0; l < body.sources.size(); ++l) {
+        const Vec3f expected = -cross(omega, box_map()->sources[l].position);
+        CHECK(length(body.sources[l].relative_velocity - expected) < 1e-6f);
+    }
+}
+
+TEST_CASE("a body turned and moved feels the turned force", "[resistance]") {
+    WorldDef def;
+    def.everywhere = true;
+    const auto force = [&](const Quat<float>& q) {
+        World world = test::world_of(def);
+        const Rotation<float> r(q);
+        Body& body = world.create_body(body_of(box_map(), {}, q, {r.to_world({0.3f, 0.2f, -0.1f}), {}}));
+        world.tick(0.01f);
+        return r.to_body(body.forces.total.force);
+    };
+    const Vec3f upright = force({});
+    const Vec3f turned = force(test::turned({3, -1, 2}, 2.2));
+    CHECK(length(upright - turned) < 1e-5f * length(upright));
+}
+
+TEST_CASE("a dry source's map time stands still", "[resistance]") {
+    World world = test::world_of();
+    Body& body = world.create_body(body_of(box_map(), {0, 0, 0}, {}, {{0.5f, 0, 0}, {}}));
+    for (int i = 0; i < 10; ++i) world.tick(0.01f);
+    int dry = 0, wet = 0;
+    for (const SourceState& s : body.sources) {
+        CHECK((s.map_time > 0) == (s.wet_ratio > 0));
+        ++(s.wet_ratio > 0 ? wet : dry);
+    }
+    CHECK(dry > 0);
+    CHECK(wet > 0);
+}
