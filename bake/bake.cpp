@@ -7,6 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "bake/directions.h"
 #include "bake/map/fill.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
@@ -49,23 +50,23 @@ void require(bool good, const std::string& text) {
     if (!good) throw BakeError(text);
 }
 
-/// One direction's series, [samples][regions][3], made periodic source by source and component by component.
-void add_direction(Map& map, const FlowSeries& flow, const BakePlan& plan, double speed, std::vector<Fluctuation>& fluctuations) {
+/// One direction's series, [samples][regions][3], made periodic source by source and component by component; the means go to the
+/// map's place for this direction.
+Fluctuation add_direction(Map& map, std::size_t direction, const FlowSeries& flow, const BakePlan& plan, double speed) {
     const std::uint32_t regions = flow.regions;
     // The solver's interval is a whole number of its steps, so that a period is a whole number of intervals only nearly.
     const double period_time = plan.period * plan.reference_length / speed;
     const auto period_samples = 2 * static_cast<std::uint32_t>(std::lround(0.5 * period_time / flow.interval));
-    double whole[3] = {};
+    Vec3d whole;
     for (std::size_t i = 0; i < flow.pressure.size(); ++i)
-        whole[i % 3] += static_cast<double>(flow.pressure[i] + flow.friction[i]) / flow.samples;
-    const double scale = std::sqrt(whole[0] * whole[0] + whole[1] * whole[1] + whole[2] * whole[2]);
+        whole[static_cast<int>(i % 3)] += static_cast<double>(flow.pressure[i] + flow.friction[i]) / flow.samples;
     const PeriodicSpec spec{std::min(period_samples, flow.samples / 2 * 2), plan.samples, plan.harmonics,
-                            amplitude_threshold * scale / std::sqrt(static_cast<double>(regions))};
+                            amplitude_threshold * length(whole) / std::sqrt(static_cast<double>(regions))};
 
     Fluctuation out(std::size_t{regions} * plan.samples * Map::components);
     std::vector<float> signal(flow.samples);
     for (std::uint32_t l = 0; l < regions; ++l) {
-        SourceForce mean;
+        SourceForce& mean = map.mean[direction * regions + l];
         for (std::uint32_t c = 0; c < Map::components; ++c) {
             const std::vector<float>& from = c < 3 ? flow.pressure : flow.friction;
             for (std::uint32_t s = 0; s < flow.samples; ++s) signal[s] = from[(std::size_t{s} * regions + l) * 3 + c % 3];
@@ -74,9 +75,8 @@ void add_direction(Map& map, const FlowSeries& flow, const BakePlan& plan, doubl
             for (std::uint32_t s = 0; s < plan.samples; ++s)
                 out[(std::size_t{l} * plan.samples + s) * Map::components + c] = series.fluctuation[s];
         }
-        map.mean.push_back(mean);
     }
-    fluctuations.push_back(std::move(out));
+    return out;
 }
 
 DirectionReport describe(const FlowSeries& flow, const FlowCase& flow_case) {
@@ -166,7 +166,6 @@ BakePlan plan_bake(const BakeOptions& options) {
         c.reference_length = plan.reference_length;
         c.start_up = plan.start_up;
         c.duration = plan.period + plan.overlap;
-        c.threads = options.threads;
         plan.flows.push_back(plan_flow(plan.surface, c));
         plan.cell_updates += static_cast<double>(plan.flows.back().cells) * static_cast<double>(plan.flows.back().steps);
         const std::string& warning = plan.flows.back().warning;
@@ -184,27 +183,24 @@ std::unique_ptr<Map> bake(const BakeOptions& options, const BakePlan& plan, cons
     map->directions = plan.directions;
     map->samples = plan.samples;
 
-    std::vector<Fluctuation> fluctuations;
-    double done = 0, reynolds_solved = 0;
-    for (std::size_t d = 0; d < plan.cases.size(); ++d) {
-        const double updates = static_cast<double>(plan.flows[d].cells) * static_cast<double>(plan.flows[d].steps);
-        const std::string label = "direction " + std::to_string(d + 1) + " of " + std::to_string(plan.cases.size()) + ", ";
-        const FlowSeries flow = solve_flow(plan.surface, plan.regions, plan.cases[d], [&](double share, const std::string& note) {
-            return !progress || progress((done + share * updates) / plan.cell_updates, label + note);
-        });
-        done += updates;
-        reynolds_solved = d == 0 ? flow.plan.reynolds_solved : std::min(reynolds_solved, flow.plan.reynolds_solved);
-        add_direction(*map, flow, plan, options.speed, fluctuations);
-        report.directions.push_back(describe(flow, plan.cases[d]));
-    }
+    const std::size_t directions = plan.cases.size();
+    map->mean.resize(directions * plan.regions.count);
+    std::vector<Fluctuation> fluctuations(directions);
+    report.directions.resize(directions);
+    double reynolds_solved = options.speed * plan.reference_length / options.viscosity;
+    solve_directions(plan.surface, plan.regions, plan.cases, plan.flows, options.threads, plan.cases.front().memory_limit, progress,
+                     [&](std::size_t d, const FlowSeries& flow) {
+                         fluctuations[d] = add_direction(*map, d, flow, plan, options.speed);
+                         report.directions[d] = describe(flow, plan.cases[d]);
+                         reynolds_solved = std::min(reynolds_solved, flow.plan.reynolds_solved);
+                     });
 
-    const double length = plan.reference_length;
     map->facts.base_speed = static_cast<float>(options.speed);
-    map->facts.period = static_cast<float>(plan.period * length / options.speed);
+    map->facts.period = static_cast<float>(plan.period * plan.reference_length / options.speed);
     map->facts.density = static_cast<float>(options.density);
     map->facts.viscosity = static_cast<float>(options.viscosity);
-    map->facts.reference_length = static_cast<float>(length);
-    map->facts.reynolds = static_cast<float>(options.speed * length / options.viscosity);
+    map->facts.reference_length = static_cast<float>(plan.reference_length);
+    map->facts.reynolds = static_cast<float>(options.speed * plan.reference_length / options.viscosity);
     map->facts.reynolds_solved = std::min(map->facts.reynolds, static_cast<float>(reynolds_solved));
     fill_fluctuations(*map, fluctuations, quantisation_budget);
     map->provenance = provenance(options, plan, report);

@@ -103,8 +103,8 @@ def _head(replayed: Replayed, recording: Path, run: dict, scene: str) -> str:
         facts.append(("Water cells", f"{water.nx} × {water.ny}"))
     if replayed.info.devices:
         facts.append(("Devices", number(replayed.info.devices)))
-    if "seconds" in run:
-        facts.append(("Wall time", quantity(float(run["seconds"]), "s")))
+    if "wall_seconds" in run:
+        facts.append(("Wall time", quantity(float(run["wall_seconds"]), "s")))
     facts = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in facts)
     notes = []
     if replayed.info.torn:
@@ -253,10 +253,29 @@ def _map(index: int, info: MapInfo, provenance: dict, count: int) -> str:
     if solved < 0.999:
         caption += (f" The solver's grid carried a Reynolds number of {number(info.reynolds_solved)}, "
                     f"{number(100 * solved)} % of the one asked for.")
-    made = _table(_flat(provenance)) if provenance else "<p>The map does not say how it was made.</p>"
+    flows = provenance.get("directions")
+    flows = flows if isinstance(flows, list) and flows and all(isinstance(one, dict) for one in flows) else None
+    made = _flat({key: value for key, value in provenance.items() if key != "directions" or not flows})
+    made = _table(made) if made else "<p>The map does not say how it was made.</p>"
     return (f"<section><h2>{'The map' if count == 1 else f'Map {index}'}</h2><p>{caption}</p>"
             f'<div class="two"><div><h3>What it holds</h3>{_table(rows)}</div>'
-            f"<div><h3>How it was made</h3>{made}</div></div></section>")
+            f"<div><h3>How it was made</h3>{made}</div></div>{_flows(flows) if flows else ''}</section>")
+
+
+def _flows(flows: list[dict]) -> str:
+    """The flow solved for each direction: a row each, a column for every value of the first."""
+    columns = list(flows[0])
+    head = "".join(f"<th scope='col'>{escape(name.replace('_', ' '))}</th>" for name in columns)
+    rows = "".join("<tr>" + "".join(f"<td>{escape(_cell(one.get(name)))}</td>" for name in columns) + "</tr>"
+                   for one in flows)
+    return (f'<h3>The flow from each direction</h3><div class="wide"><table class="many"><thead><tr>{head}</tr></thead>'
+            f"<tbody>{rows}</tbody></table></div>")
+
+
+def _cell(value) -> str:
+    if isinstance(value, list):
+        return "(" + ", ".join(_plain(item) for item in value) + ")"
+    return number(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else _plain(value)
 
 
 def _flat(value, name: str = "") -> list[tuple[str, str]]:

@@ -39,6 +39,8 @@ th, td { text-align: left; vertical-align: top; padding: .32rem .6rem .32rem 0;
 th { font-weight: 400; color: var(--quiet); width: 45%; }
 td { font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 0 2.4rem; }
+table.many { width: auto; font-size: .84rem; }
+.many th, .many td { width: auto; padding-right: 1.2rem; white-space: nowrap; }
 code { font: .88em ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; padding-top: .8rem; border-top: 1px solid var(--rule); color: var(--quiet);
   font-size: .85rem; }
