@@ -26,17 +26,20 @@ struct Preset {
 
 Preset preset(Quality quality) {
     switch (quality) {
-        case Quality::draft: return {18, 40, 10, 6, 8};
-        case Quality::high: return {102, 80, 24, 12, 40};
-        default: return {38, 40, 16, 10, 20};
+        case Quality::draft:
+            return {18, 40, 10, 6, 8};
+        case Quality::high:
+            return {102, 80, 24, 12, 40};
+        default:
+            return {38, 40, 16, 10, 20};
     }
 }
 
-constexpr double overlap_share = 0.25;         ///< of the period, faded into its beginning
-constexpr double harmonics_per_length = 2;     ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
-constexpr double amplitude_threshold = 2e-4;   ///< of the mean force on the whole object: harmonics below are dropped
-constexpr double quantisation_budget = 2e-3;   ///< of the peak force
-constexpr double longest_edges = 24;           ///< the sample triangles' longest edge: the bounding box's diagonal over this
+constexpr double overlap_share = 0.25;        ///< of the period, faded into its beginning
+constexpr double harmonics_per_length = 2;    ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
+constexpr double amplitude_threshold = 2e-4;  ///< of the mean force on the whole object: harmonics below are dropped
+constexpr double quantisation_budget = 2e-3;  ///< of the peak force
+constexpr double longest_edges = 24;  ///< the sample triangles' longest edge: the bounding box's diagonal over this
 
 std::string mesh_hash(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -50,11 +53,12 @@ void require(bool good, const std::string& text) {
     if (!good) throw BakeError(text);
 }
 
-/// One direction's series, [samples][regions][3], made periodic source by source and component by component; the means go to the
-/// map's place for this direction.
+/// One direction's series, [samples][regions][3], made periodic source by source and component by component; the means
+/// go to the map's place for this direction.
 Fluctuation add_direction(Map& map, std::size_t direction, const FlowSeries& flow, const BakePlan& plan, double speed) {
     const std::uint32_t regions = flow.regions;
-    // The solver's interval is a whole number of its steps, so that a period is a whole number of intervals only nearly.
+    // The solver's interval is a whole number of its steps, so that a period is a whole number of intervals only
+    // nearly.
     const double period_time = plan.period * plan.reference_length / speed;
     const auto period_samples = 2 * static_cast<std::uint32_t>(std::lround(0.5 * period_time / flow.interval));
     Vec3d whole;
@@ -69,7 +73,8 @@ Fluctuation add_direction(Map& map, std::size_t direction, const FlowSeries& flo
         SourceForce& mean = map.mean[direction * regions + l];
         for (std::uint32_t c = 0; c < Map::components; ++c) {
             const std::vector<float>& from = c < 3 ? flow.pressure : flow.friction;
-            for (std::uint32_t s = 0; s < flow.samples; ++s) signal[s] = from[(std::size_t{s} * regions + l) * 3 + c % 3];
+            for (std::uint32_t s = 0; s < flow.samples; ++s)
+                signal[s] = from[(std::size_t{s} * regions + l) * 3 + c % 3];
             const PeriodicSeries series = make_periodic(signal, spec);
             (c < 3 ? mean.pressure : mean.friction)[static_cast<int>(c % 3)] = static_cast<float>(series.mean);
             for (std::uint32_t s = 0; s < plan.samples; ++s)
@@ -95,7 +100,7 @@ std::string provenance(const BakeOptions& options, const BakePlan& plan, const B
     j["mesh_hash"] = mesh_hash(options.mesh);
     j["quality"] = options.quality == Quality::draft ? "draft" : options.quality == Quality::high ? "high" : "standard";
     j["solver"] = "lattice Boltzmann D3Q19, regularised, Smagorinsky, interpolated bounce-back (docs/flow.md)";
-    j["cells_across"] = plan.cases.front().cells_across;
+    j["resolution"] = plan.cases.front().resolution;
     j["start_up_lengths"] = plan.start_up;
     j["period_lengths"] = plan.period;
     j["harmonics"] = plan.harmonics;
@@ -134,8 +139,9 @@ BakePlan plan_bake(const BakeOptions& options) {
     BakePlan plan;
     const std::uint32_t count = options.directions ? options.directions : p.directions;
     const std::uint32_t frequency = frequency_of(count);
-    require(frequency > 0, "--directions " + std::to_string(count) + ": a direction set has 4 n^2 + 2 directions: 6, 18, 38, 66, 102, "
-                           "146, ... up to 1026");
+    require(frequency > 0, "--directions " + std::to_string(count) +
+                               ": a direction set has 4 n^2 + 2 directions: 6, 18, 38, 66, 102, "
+                               "146, ... up to 1026");
     plan.directions = DirectionSet(frequency);
     const std::uint32_t sources = options.sources ? options.sources : p.sources;
     require(sources <= Map::max_sources, "--sources " + std::to_string(sources) + ": at most 4096");
@@ -148,7 +154,8 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.regions = split_regions(plan.surface, sources);
 
     double area = 0;
-    for (std::uint32_t d = 0; d < plan.directions.count(); ++d) area += projected_area(surface, plan.directions.direction(d));
+    for (std::uint32_t d = 0; d < plan.directions.count(); ++d)
+        area += projected_area(surface, plan.directions.direction(d));
     plan.reference_length = std::sqrt(area / plan.directions.count());
     plan.start_up = p.start_up;
     plan.period = p.period;
@@ -162,12 +169,13 @@ BakePlan plan_bake(const BakeOptions& options) {
         c.speed = options.speed;
         c.density = options.density;
         c.viscosity = options.viscosity;
-        c.cells_across = options.cells > 0 ? options.cells : p.cells;
+        c.resolution = options.resolution > 0 ? options.resolution : p.cells;
         c.reference_length = plan.reference_length;
         c.start_up = plan.start_up;
         c.duration = plan.period + plan.overlap;
         plan.flows.push_back(plan_flow(plan.surface, c));
-        plan.cell_updates += static_cast<double>(plan.flows.back().cells) * static_cast<double>(plan.flows.back().steps);
+        plan.cell_updates +=
+            static_cast<double>(plan.flows.back().cells) * static_cast<double>(plan.flows.back().steps);
         const std::string& warning = plan.flows.back().warning;
         if (!warning.empty() && std::find(plan.notes.begin(), plan.notes.end(), warning) == plan.notes.end())
             plan.notes.push_back(warning);
@@ -176,7 +184,8 @@ BakePlan plan_bake(const BakeOptions& options) {
     return plan;
 }
 
-std::unique_ptr<Map> bake(const BakeOptions& options, const BakePlan& plan, const Progress& progress, BakeReport& report) {
+std::unique_ptr<Map> bake(const BakeOptions& options, const BakePlan& plan, const Progress& progress,
+                          BakeReport& report) {
     const auto begin = std::chrono::steady_clock::now();
     auto map = std::make_unique<Map>();
     fill_surface(*map, plan.surface, plan.regions);
@@ -188,8 +197,8 @@ std::unique_ptr<Map> bake(const BakeOptions& options, const BakePlan& plan, cons
     std::vector<Fluctuation> fluctuations(directions);
     report.directions.resize(directions);
     double reynolds_solved = options.speed * plan.reference_length / options.viscosity;
-    solve_directions(plan.surface, plan.regions, plan.cases, plan.flows, options.threads, plan.cases.front().memory_limit, progress,
-                     [&](std::size_t d, const FlowSeries& flow) {
+    solve_directions(plan.surface, plan.regions, plan.cases, plan.flows, options.threads,
+                     plan.cases.front().memory_limit, progress, [&](std::size_t d, const FlowSeries& flow) {
                          fluctuations[d] = add_direction(*map, d, flow, plan, options.speed);
                          report.directions[d] = describe(flow, plan.cases[d]);
                          reynolds_solved = std::min(reynolds_solved, flow.plan.reynolds_solved);

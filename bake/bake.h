@@ -14,15 +14,15 @@ namespace frm::bake {
 enum class Quality { draft, standard, high };
 
 struct BakeOptions {
-    std::string mesh;             ///< path of a .glb or .gltf
+    std::string mesh;  ///< path of a .glb or .gltf
     Quality quality = Quality::standard;
-    double speed = 0.5;           ///< u0, m/s
-    double density = 1000;        ///< kg/m^3
-    double viscosity = 1e-6;      ///< kinematic, m^2/s
-    std::uint32_t directions = 0; ///< 4 n^2 + 2: 6, 18, 38, 66, 102 ...; 0: by quality
-    std::uint32_t sources = 0;    ///< 1 to 4096; 0: by quality
-    double cells = 0;             ///< across the reference length; 0: by quality
-    std::uint32_t triangles = 0;  ///< most sample triangles; 0: 2,000
+    double speed = 0.5;            ///< u0, m/s
+    double density = 1000;         ///< kg/m^3
+    double viscosity = 1e-6;       ///< kinematic, m^2/s
+    std::uint32_t directions = 0;  ///< 4 n^2 + 2: 6, 18, 38, 66, 102 ...; 0: by quality
+    std::uint32_t sources = 0;     ///< 1 to 4096; 0: by quality
+    double resolution = 0;         ///< grid cells across the reference length; 0: by quality
+    std::uint32_t triangles = 0;   ///< most sample triangles; 0: 2,000
     int threads = 0;
 };
 
@@ -32,7 +32,7 @@ struct BakePlan {
     Regions regions;
     std::vector<std::string> notes;  ///< repairs and warnings for the user
     DirectionSet directions;
-    double reference_length = 0;  ///< m
+    double reference_length = 0;                   ///< m
     double start_up = 0, period = 0, overlap = 0;  ///< reference lengths travelled
     std::uint32_t harmonics = 0, samples = 0;
     std::vector<FlowCase> cases;  ///< one a direction
@@ -55,7 +55,8 @@ struct BakeReport {
 
 /// How a bake tells what it is doing: share done, 0 to 1, and a note. Returning false cancels (FlowCancelled).
 BakePlan plan_bake(const BakeOptions& options);
-std::unique_ptr<Map> bake(const BakeOptions& options, const BakePlan& plan, const Progress& progress, BakeReport& report);
+std::unique_ptr<Map> bake(const BakeOptions& options, const BakePlan& plan, const Progress& progress,
+                          BakeReport& report);
 
 /// The surface of a mesh file, closed and oriented; what was repaired is appended to `notes`.
 Surface load_surface(const std::string& path, std::vector<std::string>& notes);

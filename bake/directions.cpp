@@ -15,9 +15,16 @@ double updates_of(const FlowPlan& plan) { return static_cast<double>(plan.cells)
 
 class Work {
 public:
-    Work(const Surface& surface, const Regions& regions, const std::vector<FlowCase>& cases, const std::vector<FlowPlan>& plans,
-         const Progress& progress, const std::function<void(std::size_t, const FlowSeries&)>& done)
-        : surface_(surface), regions_(regions), cases_(cases), plans_(plans), progress_(progress), done_(done), share_(cases.size(), 0) {
+    Work(const Surface& surface, const Regions& regions, const std::vector<FlowCase>& cases,
+         const std::vector<FlowPlan>& plans, const Progress& progress,
+         const std::function<void(std::size_t, const FlowSeries&)>& done)
+        : surface_(surface),
+          regions_(regions),
+          cases_(cases),
+          plans_(plans),
+          progress_(progress),
+          done_(done),
+          share_(cases.size(), 0) {
         for (const FlowPlan& plan : plans) all_updates_ += updates_of(plan);
     }
 
@@ -35,8 +42,9 @@ private:
             try {
                 FlowCase flow_case = cases_[index];
                 flow_case.threads = threads;
-                const FlowSeries series = solve_flow(surface_, regions_, flow_case,
-                                                     [&](double share, const std::string& note) { return report(index, share, note); });
+                const FlowSeries series =
+                    solve_flow(surface_, regions_, flow_case,
+                               [&](double share, const std::string& note) { return report(index, share, note); });
                 const std::lock_guard<std::mutex> lock(lock_);
                 ++finished_;
                 share_[index] = 1;
@@ -57,7 +65,8 @@ private:
         if (!progress_) return true;
         double updates = 0;
         for (std::size_t i = 0; i < cases_.size(); ++i) updates += share_[i] * updates_of(plans_[i]);
-        return progress_(updates / all_updates_, std::to_string(finished_) + " of " + std::to_string(cases_.size()) + " directions, " + note);
+        return progress_(updates / all_updates_,
+                         std::to_string(finished_) + " of " + std::to_string(cases_.size()) + " directions, " + note);
     }
 
     const Surface& surface_;
@@ -78,14 +87,15 @@ private:
 }  // namespace
 
 void solve_directions(const Surface& surface, const Regions& regions, const std::vector<FlowCase>& cases,
-                      const std::vector<FlowPlan>& plans, int threads, std::uint64_t memory_limit, const Progress& progress,
-                      const std::function<void(std::size_t, const FlowSeries&)>& done) {
+                      const std::vector<FlowPlan>& plans, int threads, std::uint64_t memory_limit,
+                      const Progress& progress, const std::function<void(std::size_t, const FlowSeries&)>& done) {
     const auto cores = static_cast<std::size_t>(threads > 0 ? threads : omp_get_max_threads());
     std::uint64_t most_bytes = 1;
     for (const FlowPlan& plan : plans) most_bytes = std::max(most_bytes, plan.bytes);
     const auto fit = static_cast<std::size_t>(std::max<std::uint64_t>(1, memory_limit / most_bytes));
     const std::size_t workers = std::min({cores, cases.size(), fit});
-    Work(surface, regions, cases, plans, progress, done).run(workers, static_cast<int>(std::max<std::size_t>(1, cores / workers)));
+    Work(surface, regions, cases, plans, progress, done)
+        .run(workers, static_cast<int>(std::max<std::size_t>(1, cores / workers)));
 }
 
 }  // namespace frm::bake

@@ -15,42 +15,42 @@ namespace {
 
 struct Options {
     bake::BakeOptions bake;
-    std::string out;
+    std::string out, quality = "standard";
     bool json = false;
 };
 
-void check_options(const Options& o) {
-    require_positive(o.bake.speed, "--speed");
-    require_positive(o.bake.density, "--density");
-    require_positive(o.bake.viscosity, "--viscosity");
-    if (o.bake.threads < 0 || o.bake.threads > 256) throw Failure("--threads must be 1 to 256, or 0 for all");
-    require_writable(o.out);
+bake::Quality quality_of(const std::string& word) {
+    return word == "draft" ? bake::Quality::draft : word == "high" ? bake::Quality::high : bake::Quality::standard;
 }
 
 void print_plan(const bake::BakePlan& plan) {
     for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     std::uint64_t bytes = 0;
     for (const bake::FlowPlan& flow : plan.flows) bytes = std::max(bytes, flow.bytes);
-    std::fprintf(stderr, "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory\n", plan.directions.count(),
-                 plan.regions.count, plan.surface.triangles.size(), plan.cell_updates, static_cast<double>(bytes) / 1e6);
+    std::fprintf(stderr, "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory\n",
+                 plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), plan.cell_updates,
+                 static_cast<double>(bytes) / 1e6);
 }
 
-void run(const Options& o) {
-    check_options(o);
+void run(Options& o) {
+    o.bake.quality = quality_of(o.quality);
+    require_distinct({o.out}, {o.bake.mesh});
+    require_writable(o.out);
     const bake::BakePlan plan = bake::plan_bake(o.bake);
-    if (!o.json) print_plan(plan);
+    print_plan(plan);
     bake::BakeReport report;
     std::unique_ptr<Map> map;
     {
         ProgressBar bar("bake");
-        map = bake::bake(o.bake, plan, [&](double share, const std::string& note) { return bar.update(share, note); }, report);
+        map = bake::bake(
+            o.bake, plan, [&](double share, const std::string& note) { return bar.update(share, note); }, report);
     }
     const std::vector<std::uint8_t> file = encode_map(*map);
     write_file(o.out, file.data(), file.size());
 
-    double worst = 0, updates = 0;
+    double worst = 0;
     for (const bake::DirectionReport& d : report.directions) worst = std::max(worst, d.uncertainty);
-    updates = plan.cell_updates / report.seconds / 1e6;
+    const double updates = plan.cell_updates / report.seconds / 1e6;
     if (o.json) {
         nlohmann::ordered_json j{{"file", o.out},
                                  {"file_bytes", file.size()},
@@ -65,11 +65,13 @@ void run(const Options& o) {
                                  {"seconds", report.seconds}};
         std::printf("%s\n", j.dump(2).c_str());
     } else {
-        std::printf("%s: %.1f kB, %u directions, %u sources, %u samples, in %.1f s (%.0f million cell updates a second)\n", o.out.c_str(),
-                    static_cast<double>(file.size()) / 1e3, map->directions.count(), map->source_count(), map->samples,
-                    report.seconds, updates);
-        std::printf("mean drag is uncertain by %.1f %% (worst direction); fluctuations are stored to %.2g of the peak force\n",
-                    100 * worst, static_cast<double>(map->facts.quantisation_error));
+        std::printf(
+            "%s: %.1f kB, %u directions, %u sources, %u samples, in %.1f s (%.0f million cell updates a second)\n",
+            o.out.c_str(), static_cast<double>(file.size()) / 1e3, map->directions.count(), map->source_count(),
+            map->samples, report.seconds, updates);
+        std::printf(
+            "mean drag is uncertain by %.1f %% (worst direction); fluctuations are stored to %.2g of the peak force\n",
+            100 * worst, static_cast<double>(map->facts.quantisation_error));
     }
 }
 
@@ -79,22 +81,48 @@ void add_bake(CLI::App& app) {
     auto options = std::make_shared<Options>();
     Options& o = *options;
     CLI::App* command = app.add_subcommand(
-        "bake", "Solves the flow around an object from many directions and stores the forces as a map.\n"
-                "The mesh is a closed glTF surface in metres; its frame is the map's.");
-    command->add_option("MESH", o.bake.mesh, "a .glb or .gltf file")->required();
-    command->add_option("-o,--out", o.out, "the .frm file to write; it appears whole or not at all")->required();
-    command->add_option("--quality", o.bake.quality, "draft (a minute), standard or high: how fine all that follows is")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, bake::Quality>{
-            {"draft", bake::Quality::draft}, {"standard", bake::Quality::standard}, {"high", bake::Quality::high}}))
-        ->default_str("standard");
-    command->add_option("--speed", o.bake.speed, "base speed of the stream, m/s")->capture_default_str();
-    command->add_option("--density", o.bake.density, "of the fluid, kg/m^3")->capture_default_str();
-    command->add_option("--viscosity", o.bake.viscosity, "kinematic, m^2/s")->capture_default_str();
-    command->add_option("--directions", o.bake.directions, "of the stream: 6, 18, 38, 66, 102, ... (default: by quality)");
-    command->add_option("--sources", o.bake.sources, "haptic sources, 1 to 4096 (default: by quality)");
-    command->add_option("--resolution", o.bake.cells, "grid cells across the object, 4 to 512 (default: by quality)");
-    command->add_option("--triangles", o.bake.triangles, "sample triangles of the surface at most (default: 2000)");
-    command->add_option("--threads", o.bake.threads, "0: all cores. The map does not depend on it")->capture_default_str();
+        "bake", "Solves the flow around an object from many directions and stores the forces as a map.");
+    command->footer(
+        "The mesh is a closed glTF surface in metres; its frame is the map's.\n"
+        "  frm bake paddle.glb -o paddle.frm --quality draft");
+    command->add_option("MESH", o.bake.mesh, "a .glb or .gltf file")->required()->check(not_empty())->type_name("");
+    command->add_option("-o,--out", o.out, "the .frm file to write; it appears whole or not at all")
+        ->required()
+        ->check(not_empty())
+        ->type_name("FILE");
+    command
+        ->add_option("--quality", o.quality, "how fine all that follows is; draft takes a minute (default: standard)")
+        ->check(one_of({"draft", "standard", "high"}))
+        ->type_name("draft|standard|high");
+    command->add_option("--speed", o.bake.speed, "base speed of the stream, m/s")
+        ->check(stream_speed_range())
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--density", o.bake.density, "of the fluid, kg/m^3")
+        ->check(density_range())
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--viscosity", o.bake.viscosity, "kinematic, m^2/s")
+        ->check(viscosity_range())
+        ->type_name("N")
+        ->capture_default_str();
+    command
+        ->add_option("--directions", o.bake.directions, "of the stream: 6, 18, 38, 66, 102, ... (default: by quality)")
+        ->check(whole_within(6, 1026))
+        ->type_name("N");
+    command->add_option("--sources", o.bake.sources, "haptic sources, 1 to 4096 (default: by quality)")
+        ->check(whole_within(1, 4096))
+        ->type_name("N");
+    command->add_option("--resolution", o.bake.resolution, "grid cells across the object, 4 to 512 (default: by quality)")
+        ->check(number_within(4, 512))
+        ->type_name("N");
+    command->add_option("--triangles", o.bake.triangles, "sample triangles of the surface at most (default: 2000)")
+        ->check(whole_within(4, 2097152))
+        ->type_name("N");
+    command->add_option("--threads", o.bake.threads, "0: all cores. The map does not depend on it")
+        ->check(whole_within(0, 256))
+        ->type_name("N")
+        ->capture_default_str();
     command->add_flag("--json", o.json, "JSON on standard output");
     command->callback([options] { run(*options); });
 }

@@ -31,8 +31,18 @@ struct Result {
 std::vector<std::uint8_t> box_map(std::uint32_t sources, std::uint32_t triangles) {
     bake::Surface box;
     for (int i = 0; i < 8; ++i) box.vertices.emplace_back(i & 1 ? 0.1 : -0.1, i & 2 ? 0.01 : -0.01, i & 4 ? 0.3 : -0.3);
-    for (const bake::Triangle& t : {bake::Triangle{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}})
+    for (const bake::Triangle& t : {bake::Triangle{0, 2, 1},
+                                    {1, 2, 3},
+                                    {4, 5, 6},
+                                    {5, 7, 6},
+                                    {0, 1, 4},
+                                    {1, 5, 4},
+                                    {2, 6, 3},
+                                    {3, 6, 7},
+                                    {0, 4, 2},
+                                    {2, 4, 6},
+                                    {1, 3, 5},
+                                    {3, 7, 5}})
         box.triangles.push_back(t);
     return encode_map(bake::formula_map(bake::tessellate(box, 1e-4, triangles).surface, sources, 4, 128));
 }
@@ -77,7 +87,8 @@ TickTimes measure(const std::vector<std::uint8_t>& map_file, const Setting& sett
         const double phase = 0.002 * static_cast<double>(n) * 2;
         for (const frm_body body : bodies) {
             frm_pose pose{{0.3 * std::sin(phase), 0, setting.height}, {0, 0, 0, 1}};
-            pose.rotation = {static_cast<float>(std::sin(0.2 * std::sin(phase))), 0, 0, static_cast<float>(std::cos(0.2 * std::sin(phase)))};
+            pose.rotation = {static_cast<float>(std::sin(0.2 * std::sin(phase))), 0, 0,
+                             static_cast<float>(std::cos(0.2 * std::sin(phase)))};
             const frm_twist twist{{static_cast<float>(0.6 * std::cos(phase)), 0.4f, 0}, {0, 0, 0}};
             session.check(frm_body_set_motion(body, &pose, setting.moving ? &twist : nullptr));
         }
@@ -90,15 +101,18 @@ TickTimes measure(const std::vector<std::uint8_t>& map_file, const Setting& sett
 }
 
 void run(const Options& o) {
-    require_positive(o.seconds, "--seconds");
     const std::vector<std::uint8_t> large = box_map(40, 2000), small = box_map(26, 1000);
     std::vector<Result> results;
-    const auto add = [&](const char* name, double value, const char* unit, const char* what) { results.push_back({name, value, unit, what}); };
+    const auto add = [&](const char* name, double value, const char* unit, const char* what) {
+        results.push_back({name, value, unit, what});
+    };
 
     const TickTimes tick200 = measure(large, {200, 0, true, 1}, o.seconds);
-    add("tick_200_us_median", tick200.quantile(0.5), "us", "two-way tick, 200 x 200 water, 40 sources, 2,000 triangles, half wet");
+    add("tick_200_us_median", tick200.quantile(0.5), "us",
+        "two-way tick, 200 x 200 water, 40 sources, 2,000 triangles, half wet");
     add("tick_200_us_p99", tick200.quantile(0.99), "us", "the same, 99 % of the ticks");
-    add("tick_128_us_median", measure(small, {128, 0, true, 1}, o.seconds).quantile(0.5), "us", "two-way tick, 128 x 128 water, 26 sources, 1,000 triangles");
+    add("tick_128_us_median", measure(small, {128, 0, true, 1}, o.seconds).quantile(0.5), "us",
+        "two-way tick, 128 x 128 water, 26 sources, 1,000 triangles");
     const double wave = measure(large, {200, 0, false, 0}, o.seconds).quantile(0.5);
     add("wave_200_us", wave, "us", "wave step of 200 x 200 cells");
     add("wave_cell_ns", 1e3 * wave / 40000, "ns", "a cell of it");
@@ -111,7 +125,8 @@ void run(const Options& o) {
 
     if (o.json) {
         nlohmann::ordered_json j;
-        for (const Result& r : results) j["results"].push_back({{"name", r.name}, {"value", r.value}, {"unit", r.unit}});
+        for (const Result& r : results)
+            j["results"].push_back({{"name", r.name}, {"value", r.value}, {"unit", r.unit}});
         std::printf("%s\n", j.dump(2).c_str());
     } else {
         for (const Result& r : results) std::printf("%-22s %9.3f %-3s %s\n", r.name, r.value, r.unit, r.what);
@@ -122,8 +137,12 @@ void run(const Options& o) {
 
 void add_bench(CLI::App& app) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("bench", "Measures what a tick and its parts cost on this machine, on one core.");
-    command->add_option("--seconds", options->seconds, "for each figure")->capture_default_str();
+    CLI::App* command =
+        app.add_subcommand("bench", "Measures what a tick and its parts cost on this machine, on one core.");
+    command->add_option("--seconds", options->seconds, "of ticks, for each figure")
+        ->check(number_within(1e-3, 3600))
+        ->type_name("S")
+        ->capture_default_str();
     command->add_flag("--json", options->json, "JSON on standard output");
     command->callback([options] { run(*options); });
 }

@@ -1,10 +1,10 @@
-// What the commands share: how each joins the program, how it fails, and small readers of arguments.
+// What the commands share: how each joins the program, and how it fails.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <stdexcept>
-#include <string>
+
+#include "cli/arguments.h"
 
 namespace frm::cli {
 
@@ -26,13 +26,5 @@ void add_force(CLI::App& app);
 void add_run(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_bench(CLI::App& app);
-
-using Numbers = std::array<double, 3>;
-
-/// "x,y,z"; throws Failure naming the option.
-Numbers read_vector(const std::string& text, const std::string& option);
-/// As read_vector, and of length 1 afterwards.
-Numbers read_direction(const std::string& text, const std::string& option);
-void require_positive(double value, const std::string& option);
 
 }  // namespace frm::cli

@@ -17,7 +17,9 @@ namespace {
 
 struct Options {
     bake::FlowCase flow;
-    std::string mesh, direction, section, out;
+    std::string mesh, out;
+    Numbers direction{}, section{};
+    bool automatic_section = false;
     double length = 0;
     bool json = false;
 };
@@ -56,7 +58,8 @@ Results evaluate(const bake::FlowSeries& flow, const bake::FlowCase& c, double l
     for (std::size_t s = 0; s < flow.samples; ++s) {
         force[s] = force_at(flow, s);
         r.force_mean += force[s] / static_cast<double>(flow.samples);
-        for (int k = 0; k < 3; ++k) r.torque_mean[k] += static_cast<double>(flow.torque[s * 3 + static_cast<std::size_t>(k)]) / flow.samples;
+        for (int k = 0; k < 3; ++k)
+            r.torque_mean[k] += static_cast<double>(flow.torque[s * 3 + static_cast<std::size_t>(k)]) / flow.samples;
     }
     std::vector<Vec3d> lift(flow.samples);
     Vec3d square;
@@ -85,18 +88,21 @@ Results evaluate(const bake::FlowSeries& flow, const bake::FlowCase& c, double l
 }
 
 std::string csv(const bake::FlowSeries& flow) {
-    std::string text = "time,fx,fy,fz,fx_pressure,fy_pressure,fz_pressure,fx_friction,fy_friction,fz_friction,tx,ty,tz\n";
+    std::string text =
+        "time,fx,fy,fz,fx_pressure,fy_pressure,fz_pressure,fx_friction,fy_friction,fz_friction,tx,ty,tz\n";
     for (std::size_t s = 0; s < flow.samples; ++s) {
         const Vec3d total = force_at(flow, s);
         Vec3d pressure;
         for (std::size_t l = 0; l < flow.regions; ++l)
-            for (int c = 0; c < 3; ++c) pressure[c] += static_cast<double>(flow.pressure[(s * flow.regions + l) * 3 + static_cast<std::size_t>(c)]);
+            for (int c = 0; c < 3; ++c)
+                pressure[c] +=
+                    static_cast<double>(flow.pressure[(s * flow.regions + l) * 3 + static_cast<std::size_t>(c)]);
         const Vec3d friction = total - pressure;
         char line[320];
         std::snprintf(line, sizeof line, "%.9g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g\n",
-                      static_cast<double>(s) * flow.interval, total.x, total.y, total.z, pressure.x, pressure.y, pressure.z, friction.x,
-                      friction.y, friction.z, static_cast<double>(flow.torque[s * 3]), static_cast<double>(flow.torque[s * 3 + 1]),
-                      static_cast<double>(flow.torque[s * 3 + 2]));
+                      static_cast<double>(s) * flow.interval, total.x, total.y, total.z, pressure.x, pressure.y,
+                      pressure.z, friction.x, friction.y, friction.z, static_cast<double>(flow.torque[s * 3]),
+                      static_cast<double>(flow.torque[s * 3 + 1]), static_cast<double>(flow.torque[s * 3 + 2]));
         text += line;
     }
     return text;
@@ -114,17 +120,15 @@ Vec3d longest_across(const bake::Surface& surface, const Vec3d& direction) {
         const double across = std::fabs(dot(axis, direction)) < 1e-6 ? size[k] : -1;
         if (across > longest) longest = across, best = axis;
     }
-    if (longest < 0) throw Failure("--section: no axis of the mesh lies across the direction; give the section's normal: --section x,y,z");
+    if (longest < 0)
+        throw Failure(
+            "--section: no axis of the mesh lies across the direction; give the section's normal: --section x,y,z");
     return best;
 }
 
 void run(Options& o, bool section) {
-    const Numbers e = read_direction(o.direction, "--direction");
-    o.flow.direction = {e[0], e[1], e[2]};
-    require_positive(o.flow.speed, "--speed");
-    require_positive(o.flow.viscosity, "--viscosity");
-    require_positive(o.flow.density, "--density");
-    if (o.length != 0) require_positive(o.length, "--length");
+    o.flow.direction = {o.direction[0], o.direction[1], o.direction[2]};
+    require_distinct({o.out}, {o.mesh});
     if (!o.out.empty()) require_writable(o.out);
 
     std::vector<std::string> notes;
@@ -135,12 +139,10 @@ void run(Options& o, bool section) {
     if (section) {
         o.flow.section = true;
         o.flow.section_origin = bake::measure(surface).centroid;
-        if (o.section.empty()) {
-            o.flow.section_normal = longest_across(surface, o.flow.direction);
-        } else {
-            const Numbers n = read_direction(o.section, "--section");
-            o.flow.section_normal = {n[0], n[1], n[2]};
-        }
+        o.flow.section_normal = o.automatic_section ? longest_across(surface, o.flow.direction)
+                                                    : Vec3d(o.section[0], o.section[1], o.section[2]);
+        if (std::fabs(dot(o.flow.section_normal, o.flow.direction)) > 1e-6)
+            throw CLI::ValidationError("--section", "the normal must be at right angles to --direction");
     }
     const bake::FlowPlan plan = bake::plan_flow(surface, o.flow);
     if (!plan.warning.empty()) notes.push_back(plan.warning);
@@ -149,9 +151,12 @@ void run(Options& o, bool section) {
     bake::FlowSeries flow;
     {
         ProgressBar bar("flow");
-        flow = bake::solve_flow(surface, whole, o.flow, [&](double share, const std::string& note) { return bar.update(share, note); });
+        flow = bake::solve_flow(surface, whole, o.flow,
+                                [&](double share, const std::string& note) { return bar.update(share, note); });
     }
-    const double length_used = o.length > 0 ? o.length : section ? plan.reference_length : std::sqrt(plan.projected_area);
+    const double length_used = o.length > 0 ? o.length
+                               : section    ? plan.reference_length
+                                            : std::sqrt(plan.projected_area);
     const Results r = evaluate(flow, o.flow, length_used);
     const double reynolds = o.flow.speed * length_used / o.flow.viscosity;
     if (!o.out.empty()) write_file(o.out, csv(flow));
@@ -180,13 +185,16 @@ void run(Options& o, bool section) {
     }
     if (o.out.empty()) std::printf("%s", csv(flow).c_str());
     std::FILE* to = o.out.empty() ? stderr : stdout;
-    std::fprintf(to, "force %.5g, %.5g, %.5g N%s; drag coefficient %.4f +- %.1f %% on %.5g m^2%s, lift %.4f (rms %.4f)", r.force_mean.x,
-                 r.force_mean.y, r.force_mean.z, section ? " a metre" : "", r.cd, 100 * flow.uncertainty, plan.projected_area,
-                 section ? " a metre" : "", r.cl, r.cl_rms);
+    std::fprintf(to, "force %.5g, %.5g, %.5g N%s; drag coefficient %.4f +- %.1f %% on %.5g m^2%s, lift %.4f (rms %.4f)",
+                 r.force_mean.x, r.force_mean.y, r.force_mean.z, section ? " a metre" : "", r.cd,
+                 100 * flow.uncertainty, plan.projected_area, section ? " a metre" : "", r.cl, r.cl_rms);
     if (r.strouhal > 0) std::fprintf(to, ", Strouhal number %.4f", r.strouhal);
-    std::fprintf(to, "\nReynolds number %.4g (solved %.4g) on %.4g m; %llu cells, %llu steps, %.1f s, %.0f million cell updates a second\n",
-                 reynolds, reynolds * plan.reynolds_solved / plan.reynolds, length_used, static_cast<unsigned long long>(plan.cells),
-                 static_cast<unsigned long long>(plan.steps), flow.seconds, flow.mlups);
+    std::fprintf(to,
+                 "\nReynolds number %.4g (solved %.4g) on %.4g m; %llu cells, %llu steps, %.1f s, %.0f million cell "
+                 "updates a second\n",
+                 reynolds, reynolds * plan.reynolds_solved / plan.reynolds, length_used,
+                 static_cast<unsigned long long>(plan.cells), static_cast<unsigned long long>(plan.steps), flow.seconds,
+                 flow.mlups);
 }
 
 }  // namespace
@@ -195,22 +203,54 @@ void add_flow(CLI::App& app) {
     auto options = std::make_shared<Options>();
     Options& o = *options;
     CLI::App* command = app.add_subcommand(
-        "flow", "Solves one uniform stream past a mesh and gives the force over time (CSV), without making a map.\n"
-                "  frm flow sphere.glb --direction 1,0,0 --speed 0.001 --json");
-    command->add_option("MESH", o.mesh, "a .glb or .gltf file, closed, in metres")->required();
-    command->add_option("--direction", o.direction, "x,y,z: where the water goes, in the mesh's frame")->required();
-    command->add_option("--speed", o.flow.speed, "of the stream, m/s")->required();
-    command->add_option("--viscosity", o.flow.viscosity, "kinematic, m^2/s")->capture_default_str();
-    command->add_option("--density", o.flow.density, "kg/m^3")->capture_default_str();
-    CLI::Option* section = command->add_option("--section", o.section,
-        "solve in two dimensions the cut through the centroid; optionally its normal x,y,z (default: the mesh's longest axis across the "
-        "stream). Forces and area are then for a metre of span")->expected(0, 1);
-    command->add_option("--length", o.length, "length of the Reynolds and Strouhal numbers, m (default: the root of the projected area)");
-    command->add_option("--resolution", o.flow.cells_across, "grid cells across the reference length, 4 to 512")->capture_default_str();
-    command->add_option("--start-up", o.flow.start_up, "reference lengths travelled before the series begins")->capture_default_str();
-    command->add_option("--duration", o.flow.duration, "reference lengths travelled during the series")->capture_default_str();
-    command->add_option("--threads", o.flow.threads, "0: all cores. The result does not depend on it")->capture_default_str();
-    command->add_option("-o,--out", o.out, "write the series to this CSV file (default: standard output)");
+        "flow", "Solves one uniform stream past a mesh and gives the force over time, without making a map.");
+    command->footer("  frm flow sphere.glb --direction 1,0,0 --speed 0.001 --json");
+    command->add_option("MESH", o.mesh, "a .glb or .gltf file, closed, in metres")
+        ->required()
+        ->check(not_empty())
+        ->type_name("");
+    add_direction(*command, "--direction", o.direction, "where the water goes, in the mesh's frame")->required();
+    command->add_option("--speed", o.flow.speed, "of the stream, m/s")
+        ->required()
+        ->check(stream_speed_range())
+        ->type_name("N");
+    command->add_option("--viscosity", o.flow.viscosity, "kinematic, m^2/s")
+        ->check(viscosity_range())
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--density", o.flow.density, "kg/m^3")
+        ->check(density_range())
+        ->type_name("N")
+        ->capture_default_str();
+    CLI::Option* section =
+        add_direction_or_auto(*command, "--section", o.section, o.automatic_section,
+                              "solve in two dimensions the cut through the centroid, across this normal\n"
+                              "(default: the mesh's longest axis across the stream).\n"
+                              "Forces and area are then for a metre of span");
+    command
+        ->add_option("--length", o.length,
+                     "of the Reynolds and Strouhal numbers, m (default: the root of the projected area)")
+        ->check(positive())
+        ->type_name("N");
+    command->add_option("--resolution", o.flow.resolution, "grid cells across the reference length, 4 to 512")
+        ->check(number_within(4, 512))
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--start-up", o.flow.start_up, "reference lengths travelled before the series begins")
+        ->check(number_within(0, 1e5))
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--duration", o.flow.duration, "reference lengths travelled during the series")
+        ->check(number_within(1e-2, 1e5))
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--threads", o.flow.threads, "0: all cores. The result does not depend on it")
+        ->check(whole_within(0, 256))
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("-o,--out", o.out, "write the series to this CSV file (default: standard output)")
+        ->check(not_empty())
+        ->type_name("FILE");
     command->add_flag("--json", o.json, "means and coefficients as JSON on standard output, no series there");
     command->callback([options, section] { run(*options, section->count() > 0); });
 }

@@ -22,8 +22,8 @@ std::string Session::last_error() const {
     return text;
 }
 
-void Session::check(frm_status status) const {
-    if (status != FRM_OK) throw Failure(last_error());
+void Session::check(frm_status status, const std::string& where) const {
+    if (status != FRM_OK) throw Failure((where.empty() ? "" : where + ": ") + last_error());
 }
 
 frm_map Session::open_map(const std::string& path) const {

@@ -16,8 +16,8 @@ public:
     Session& operator=(const Session&) = delete;
 
     frm_context context() const { return context_; }
-    /// Throws Failure with the library's own text.
-    void check(frm_status status) const;
+    /// Throws Failure with the library's own text, after `where` if that is given.
+    void check(frm_status status, const std::string& where = "") const;
     std::string last_error() const;
 
     frm_map open_map(const std::string& path) const;

@@ -28,13 +28,15 @@ void print_map(const frm_map_info& i, const nlohmann::ordered_json& made) {
     row("series", "%u samples, period %.4g s", i.samples, d(i.period));
     row("base speed", "%g m/s", d(i.base_speed));
     row("fluid", "%g kg/m^3, %g m^2/s", d(i.density), d(i.viscosity));
-    row("Reynolds number", "%.4g asked for, %.4g solved, on a length of %.4g m", d(i.reynolds), d(i.reynolds_solved), d(i.reference_length));
+    row("Reynolds number", "%.4g asked for, %.4g solved, on a length of %.4g m", d(i.reynolds), d(i.reynolds_solved),
+        d(i.reference_length));
     row("quantisation error", "%.2g of the peak force", d(i.quantisation_error));
     row("surface", "%u triangles, %.4g m^2, encloses %.4g m^3", i.triangles, d(i.area), d(i.volume));
     row("bounds", "(%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m", d(i.bounds_low.x), d(i.bounds_low.y), d(i.bounds_low.z),
         d(i.bounds_high.x), d(i.bounds_high.y), d(i.bounds_high.z));
     for (const auto& [key, value] : made.items())
-        if (key != "directions") row(key.c_str(), "%s", value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
+        if (key != "directions")
+            row(key.c_str(), "%s", value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
     if (!made.contains("directions")) return;
     std::printf("\n%-26s %8s %12s %10s %10s\n", "direction", "drag cf.", "uncertainty", "Re solved", "blockage");
     for (const auto& one : made["directions"]) {
@@ -65,7 +67,10 @@ bool is_recording(const std::string& path) {
     unsigned char head[4] = {};
     const bool read = std::fread(head, 1, sizeof head, file) == sizeof head;
     std::fclose(file);
-    return read && std::memcmp(head, "\x89" "FRR", 4) == 0;
+    return read && std::memcmp(head,
+                               "\x89"
+                               "FRR",
+                               4) == 0;
 }
 
 // Opening reads every chunk or block, checks the sums and the structure; what it accepts is sound.
@@ -88,28 +93,31 @@ void verify(const Options& options) {
         j["kind"] = "map";
         j["sources"] = facts.sources;
         j["directions"] = facts.directions;
-        text = "map, " + std::to_string(facts.sources) + " sources, " + std::to_string(facts.directions) + " directions";
+        text =
+            "map, " + std::to_string(facts.sources) + " sources, " + std::to_string(facts.directions) + " directions";
     }
     j["sound"] = true;
-    if (options.json) std::printf("%s\n", j.dump(2).c_str());
-    else std::printf("%s: sound (%s; checksums and structure)\n", options.file.c_str(), text.c_str());
+    if (options.json)
+        std::printf("%s\n", j.dump(2).c_str());
+    else
+        std::printf("%s: sound (%s; checksums and structure)\n", options.file.c_str(), text.c_str());
 }
 
-CLI::App* add(CLI::App& app, const char* name, const char* help, void (*run)(const Options&)) {
+void add(CLI::App& app, const char* name, const char* help, const char* file, void (*run)(const Options&)) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(name, help);
-    command->add_option("FILE", options->file, "a .frm map")->required();
+    command->add_option("FILE", options->file, file)->required()->check(not_empty())->type_name("");
     command->add_flag("--json", options->json, "JSON on standard output");
     command->callback([options, run] { run(*options); });
-    return command;
 }
 
 }  // namespace
 
-void add_info(CLI::App& app) { add(app, "info", "Shows what a map holds and how it was made.", info); }
+void add_info(CLI::App& app) { add(app, "info", "Shows what a map holds and how it was made.", "a .frm map", info); }
 
 void add_verify(CLI::App& app) {
-    add(app, "verify", "Checks a map's or a recording's checksums and structure; exit status 1 if it is damaged.", verify);
+    add(app, "verify", "Checks a map's or a recording's checksums and structure; exit status 1 if it is damaged.",
+        "a .frm map or a recording", verify);
 }
 
 }  // namespace frm::cli

@@ -1,64 +1,75 @@
-#include <cmath>
-#include <cstdio>
+#include <unistd.h>
 
-#include "bake/error.h"
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "bake/flow/flow.h"
 #include "cli/command.h"
 #include "core/error.h"
 #include "frm.h"
 
-namespace frm::cli {
+namespace {
 
-Numbers read_vector(const std::string& text, const std::string& option) {
-    Numbers v{};
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &v[0], &v[1], &v[2], &used) != 3 || text.c_str()[used] != 0 ||
-        !std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]))
-        throw Failure(option + " " + text + ": three numbers are needed, such as 0,1,0");
-    return v;
+/// Lets a solver's thread sleep while it waits for another: spinning, as libgomp does by itself, makes a bake ten times
+/// slower once another program wants the processors. libgomp reads the variable when it is loaded, hence the second
+/// start.
+void let_threads_sleep(int argc, char** argv) {
+    if (argc < 2 || (std::strcmp(argv[1], "bake") != 0 && std::strcmp(argv[1], "flow") != 0)) return;
+    if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+    std::error_code error;
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();
+    if (error || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
+    execv(program.c_str(), argv);
 }
 
-Numbers read_direction(const std::string& text, const std::string& option) {
-    Numbers v = read_vector(text, option);
-    const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!(length > 0)) throw Failure(option + " " + text + ": a direction cannot be zero");
-    for (double& x : v) x /= length;
-    return v;
+void add_commands(CLI::App& app) {
+    app.require_subcommand(1);
+    app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+    app.get_formatter()->label("REQUIRED", "(required)");
+    app.set_help_flag("-h,--help", "this text");
+    app.set_version_flag("--version",
+                         std::to_string(FRM_VERSION_MAJOR) + "." + std::to_string(FRM_VERSION_MINOR) + "." +
+                             std::to_string(FRM_VERSION_PATCH),
+                         "the version");
+    frm::cli::add_bake(app);
+    frm::cli::add_info(app);
+    frm::cli::add_verify(app);
+    frm::cli::add_flow(app);
+    frm::cli::add_force(app);
+    frm::cli::add_run(app);
+    frm::cli::add_replay(app);
+    frm::cli::add_bench(app);
+    for (CLI::App* command : app.get_subcommands({})) command->group("Commands");
 }
 
-void require_positive(double value, const std::string& option) {
-    if (!(value > 0) || !std::isfinite(value)) throw Failure(option + " must be a positive number");
-}
-
-}  // namespace frm::cli
+}  // namespace
 
 int main(int argc, char** argv) {
-    using namespace frm::cli;
-    CLI::App app{"frm - the force of water on moving rigid objects.\n\n"
-                 "  frm bake paddle.glb -o paddle.frm      solve the flow around an object once\n"
-                 "  frm info paddle.frm                    what the map holds\n"
-                 "  frm force paddle.frm --velocity 0,1,0  what it feels when it moves\n"
-                 "  frm run scene.json --report out        move it through water, and see\n\n"
-                 "Units are SI: m, s, kg, N. Each command has its own --help.",
-                 "frm"};
-    app.require_subcommand(1);
-    app.fallthrough(false);
-    app.set_version_flag("--version", std::to_string(FRM_VERSION_MAJOR) + "." + std::to_string(FRM_VERSION_MINOR) + "." +
-                                          std::to_string(FRM_VERSION_PATCH));
-    add_bake(app);
-    add_info(app);
-    add_verify(app);
-    add_flow(app);
-    add_force(app);
-    add_run(app);
-    add_replay(app);
-    add_bench(app);
+    let_threads_sleep(argc, argv);
+    CLI::App app{
+        "frm - the force of water on moving rigid objects.\n\n"
+        "  frm bake paddle.glb -o paddle.frm      solve the flow around an object once\n"
+        "  frm info paddle.frm                    what the map holds\n"
+        "  frm force paddle.frm --velocity 0,1,0  what it feels when it moves\n"
+        "  frm run scene.json --report out        move it through water, and see\n\n"
+        "Units are SI: m, s, kg, N. Each command has its own --help.\n"
+        "Exit status: 0 good, 1 failed, 2 wrong arguments.\n",
+        "frm"};
+    add_commands(app);
     try {
-        app.parse(argc, argv);
-        return 0;
+        app.parse(frm::cli::arguments_of(argc, argv));
+        if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return 0;
+        std::fprintf(stderr, "frm: standard output: %s\n", std::strerror(errno));
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
-    } catch (const Unsuccessful&) {
-        return 1;
+        if (error.get_exit_code() == 0) return app.exit(error);
+        std::fprintf(stderr, "%s\n", frm::cli::usage_error(app, error).c_str());
+        return 2;
+    } catch (const frm::cli::Unsuccessful&) {
+    } catch (const frm::bake::FlowCancelled&) {
+        std::fprintf(stderr, "frm: interrupted; nothing was written\n");
     } catch (const frm::Error& error) {
         std::fprintf(stderr, "frm: %s\n", error.text());
     } catch (const std::bad_alloc&) {

@@ -1,25 +1,18 @@
 #include "cli/motion.h"
 
 #include <cmath>
-
-#include "cli/command.h"
+#include <map>
 
 namespace frm::cli {
 namespace {
 
-using Json = nlohmann::json;
 constexpr double degree = 3.14159265358979323846 / 180;
 
-Numbers numbers(const Json& j, const char* key, const std::string& where) {
-    if (!j.contains(key)) return {0, 0, 0};
-    const Json& v = j[key];
-    if (!v.is_array() || v.size() != 3 || !v[0].is_number() || !v[1].is_number() || !v[2].is_number())
-        throw Failure(where + "." + key + ": three numbers are needed");
-    return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
-}
-
-std::array<double, 6> six(const Json& j, const std::string& where) {
-    const Numbers p = numbers(j, "position", where), r = numbers(j, "rotation", where);
+/// "position" and "rotation" of a motion or key.
+std::array<double, 6> read_six(const JsonReader& j) {
+    Numbers p{}, r{};
+    j.read("position", p);
+    j.read("rotation", r);
     return {p[0], p[1], p[2], r[0] * degree, r[1] * degree, r[2] * degree};
 }
 
@@ -34,39 +27,44 @@ Quaternion product(const Quaternion& a, const Quaternion& b) {
 
 }  // namespace
 
-Motion::Motion(const Json& motion, const std::string& where) {
-    if (!motion.is_object()) throw Failure(where + ": an object is needed");
-    const std::string type = motion.value("type", "");
-    for (const auto& [key, ignored] : motion.items()) {
-        const bool known = key == "type" || (type == "device" && key == "device") || (type == "keyframes" && (key == "keys" || key == "repeat")) ||
-                           ((type == "fixed" || type == "steady") && (key == "position" || key == "rotation")) ||
-                           (type == "steady" && (key == "velocity" || key == "spin"));
-        if (!known) throw Failure(where + "." + key + ": not known for the type \"" + type + "\"");
-    }
-    if (type == "fixed" || type == "steady") {
-        keys_.push_back({0, six(motion, where)});
-        const Numbers v = numbers(motion, "velocity", where), s = numbers(motion, "spin", where);
-        velocity_ = {v[0], v[1], v[2], s[0] * degree, s[1] * degree, s[2] * degree};
-    } else if (type == "keyframes") {
-        if (!motion.contains("keys") || !motion["keys"].is_array() || motion["keys"].size() < 2)
-            throw Failure(where + ".keys: at least two are needed");
-        for (const Json& key : motion["keys"]) {
-            const std::string here = where + ".keys[" + std::to_string(keys_.size()) + "]";
-            if (!key.is_object() || !key.contains("time") || !key["time"].is_number()) throw Failure(here + ".time: a number is needed");
-            keys_.push_back({key["time"].get<double>(), six(key, here)});
-            if (keys_.size() > 1 && !(keys_.back().time > keys_[keys_.size() - 2].time))
-                throw Failure(here + ".time: must be later than the one before");
+Motion::Motion(const JsonReader& j) {
+    static const std::map<std::string, std::vector<std::string>> keys_of_type{
+        {"fixed", {"type", "position", "rotation"}},
+        {"steady", {"type", "position", "rotation", "velocity", "spin"}},
+        {"keyframes", {"type", "keys", "repeat"}},
+        {"device", {"type", "device"}}};
+    std::string type;
+    j.read("type", type);
+    const auto known = keys_of_type.find(type);
+    if (known == keys_of_type.end()) j.fail("type", "\"" + type + "\" is not one of fixed, steady, keyframes, device");
+    j.allow_only(known->second, "the type \"" + type + "\"");
+
+    if (type == "keyframes") {
+        for (const JsonReader& key : j.list("keys")) {
+            key.allow_only({"time", "position", "rotation"});
+            if (!key.has("time")) key.fail("time", "a number is needed");
+            Keyframe frame{0, read_six(key)};
+            key.read("time", frame.time);
+            if (!keys_.empty() && !(frame.time > keys_.back().time))
+                key.fail("time", "must be later than the one before");
+            keys_.push_back(frame);
         }
-        repeat_ = motion.value("repeat", false);
+        if (keys_.size() < 2) j.fail("keys", "at least two are needed");
+        j.read("repeat", repeat_);
     } else if (type == "device") {
-        device_ = motion.value("device", "");
-        if (device_.empty()) throw Failure(where + ".device: \"null\" or the path of a recording is needed");
+        j.read("device", device_);
+        if (device_.empty()) j.fail("device", "\"null\" or the path of a recording is needed");
     } else {
-        throw Failure(where + ".type: \"" + type + "\" is not one of fixed, steady, keyframes, device");
+        keys_.push_back({0, read_six(j)});
+        Numbers v{}, s{};
+        j.read("velocity", v);
+        j.read("spin", s);
+        velocity_ = {v[0], v[1], v[2], s[0] * degree, s[1] * degree, s[2] * degree};
     }
 }
 
-// A cubic through the keys whose slope at each is that of the line between its neighbours: position and velocity are continuous.
+// A cubic through the keys whose slope at each is that of the line between its neighbours: position and velocity are
+// continuous.
 std::array<double, 6> Motion::value(double time) const {
     if (keys_.size() == 1) {
         std::array<double, 6> v = keys_[0].value;
@@ -110,7 +108,8 @@ void Motion::at(double time, frm_pose& pose, frm_twist& twist) const {
     const Quaternion qy = about(1, v[4]), qz = about(2, v[5]);
     const Quaternion q = product(qz, product(qy, about(0, v[3])));
     pose.position = {v[0], v[1], v[2]};
-    pose.rotation = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
+    pose.rotation = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
+                     static_cast<float>(q.w)};
     twist.linear = {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])};
     // Angular velocity of R = Rz Ry Rx: each angle's rate about its axis, carried along by the rotations after it.
     const double cy = std::cos(v[4]), sy = std::sin(v[4]), cz = std::cos(v[5]), sz = std::sin(v[5]);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <array>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/json_reader.h"
 #include "frm.h"
 
 namespace frm::cli {
@@ -17,8 +17,8 @@ struct Keyframe {
 
 class Motion {
 public:
-    /// From a scene's "motion" (docs/scene.md). Throws Failure naming `where`.
-    Motion(const nlohmann::json& motion, const std::string& where);
+    /// From a scene's "motion" (docs/scene.md). Throws Failure naming what is wrong.
+    explicit Motion(const JsonReader& motion);
 
     /// Not at(), but what the device of this name says.
     const std::string& device() const { return device_; }

@@ -13,11 +13,21 @@ volatile std::sig_atomic_t stop = 0;
 
 void note_interrupt(int) { stop = 1; }
 
+/// Sets the handler unless the signal is ignored (nohup, a job in the background). Gives the one there was.
+void (*watch(int number))(int) {
+    void (*const old)(int) = std::signal(number, note_interrupt);
+    if (old == SIG_IGN) std::signal(number, SIG_IGN);
+    return old;
+}
+
 std::string time_text(double seconds) {
     char text[32];
-    if (seconds < 90) std::snprintf(text, sizeof text, "%.0f s", seconds);
-    else if (seconds < 5400) std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-    else std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+    if (seconds < 90)
+        std::snprintf(text, sizeof text, "%.0f s", seconds);
+    else if (seconds < 5400)
+        std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
+    else
+        std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
     return text;
 }
 
@@ -30,13 +40,17 @@ double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::ste
 bool interrupted() { return stop != 0; }
 
 ProgressBar::ProgressBar(std::string title)
-    : title_(std::move(title)), begin_(Clock::now()), shown_(begin_), terminal_(isatty(STDERR_FILENO) != 0) {
-    std::signal(SIGINT, note_interrupt);
-}
+    : title_(std::move(title)),
+      begin_(Clock::now()),
+      shown_(begin_),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      old_interrupt_(watch(SIGINT)),
+      old_terminate_(watch(SIGTERM)) {}
 
 ProgressBar::~ProgressBar() {
     if (visible_ && terminal_) std::fprintf(stderr, "\r\033[K");
-    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGINT, old_interrupt_);
+    std::signal(SIGTERM, old_terminate_);
 }
 
 bool ProgressBar::update(double share, const std::string& note) {
@@ -51,10 +65,15 @@ bool ProgressBar::update(double share, const std::string& note) {
     if (terminal_) {
         constexpr int width = 28;
         const int full = static_cast<int>(share * width);
-        std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f %%  %s  %s", title_.c_str(), std::string(static_cast<std::size_t>(full), '#').c_str(),
-                     std::string(static_cast<std::size_t>(width - full), '.').c_str(), 100 * share, left.c_str(), note.c_str());
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f %%  %s  %s", title_.c_str(),
+                     std::string(static_cast<std::size_t>(full), '#').c_str(),
+                     std::string(static_cast<std::size_t>(width - full), '.').c_str(), 100 * share, left.c_str(),
+                     note.c_str());
     } else {
-        std::fprintf(stderr, "%s: %3.0f %%, %s, %s\n", title_.c_str(), 100 * share, left.c_str(), note.c_str());
+        std::fprintf(stderr, "%s: %3.0f %%", title_.c_str(), 100 * share);
+        for (const std::string& text : {left, note})
+            if (!text.empty()) std::fprintf(stderr, ", %s", text.c_str());
+        std::fputc('\n', stderr);
     }
     std::fflush(stderr);
     return !interrupted();

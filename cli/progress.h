@@ -1,4 +1,5 @@
-// How far a long command is, on standard error: a bar with the time left on a terminal, a plain line now and then elsewhere.
+// How far a long command is, on standard error: a bar with the time left on a terminal, a plain line now
+// and then elsewhere.
 #pragma once
 
 #include <chrono>
@@ -22,9 +23,11 @@ private:
     std::string title_;
     Clock::time_point begin_, shown_;
     bool terminal_, visible_ = false;
+    void (*old_interrupt_)(int);
+    void (*old_terminate_)(int);
 };
 
-/// True once the user has pressed Ctrl-C; watched from the first ProgressBar on.
+/// True once the user has pressed Ctrl-C, or the system asked for an end (SIGTERM), while there was a ProgressBar.
 bool interrupted();
 
 }  // namespace frm::cli

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <vector>
@@ -20,7 +21,8 @@ namespace fs = std::filesystem;
 /// The library that this program runs with, so that the page is drawn with the same one.
 std::string library_path() {
     Dl_info info{};
-    if (dladdr(reinterpret_cast<const void*>(&frm_version), &info) == 0 || !info.dli_fname) throw Failure("libfrm's own path is not known");
+    if (dladdr(reinterpret_cast<const void*>(&frm_version), &info) == 0 || !info.dli_fname)
+        throw Failure("libfrm's own path is not known");
     return fs::canonical(info.dli_fname).string();
 }
 
@@ -40,6 +42,8 @@ int run_python(const std::vector<std::string>& arguments) {
     const pid_t child = fork();
     if (child < 0) throw Failure("--report: a process cannot be started");
     if (child == 0) {
+        // Standard output is the caller's: --json must be alone there.
+        if (!freopen("/dev/null", "w", stdout)) _exit(127);
         setenv("PYTHONPATH", package_path().c_str(), 1);
         setenv("FRM_LIBRARY", library_path().c_str(), 1);
         setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
@@ -61,11 +65,14 @@ void require_report_tools() {
     package_path();
     library_path();
     if (run_python({"-c", "import sys\ntry:\n import matplotlib\nexcept ImportError:\n sys.exit(3)"}) != 0)
-        throw Failure("--report: " FRM_PYTHON " with matplotlib is needed: apt install python3-matplotlib. Without --report the run needs neither");
+        throw Failure(
+            "--report: " FRM_PYTHON
+            " with matplotlib is needed: apt install python3-matplotlib. Without --report the run needs neither");
 }
 
 void write_report(const std::string& recording, const std::string& run_json, const std::string& page) {
-    if (run_python({"-m", "frm.report", recording, "-o", page, "--run", run_json}) != 0) throw Failure("--report: the page was not written");
+    if (run_python({"-m", "frm.report", recording, "-o", page, "--run", run_json}) != 0)
+        throw Failure("--report: the page was not written");
 }
 
 }  // namespace frm::cli

@@ -1,155 +1,119 @@
 #include "cli/scene.h"
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "cli/command.h"
+#include "cli/json_reader.h"
 
 namespace frm::cli {
 namespace {
 
 using Json = nlohmann::json;
 
-void know(const Json& j, const std::string& where, const std::vector<std::string>& keys) {
-    if (!j.is_object()) throw Failure(where + ": an object is needed");
-    for (const auto& [key, ignored] : j.items()) {
-        bool known = false;
-        for (const std::string& k : keys) known |= k == key;
-        if (!known) throw Failure(where + "." + key + ": not known here");
-    }
-}
-
-double number(const Json& j, const char* key, double otherwise, const std::string& where) {
-    if (!j.contains(key)) return otherwise;
-    if (!j[key].is_number()) throw Failure(where + "." + key + ": a number is needed");
-    return j[key].get<double>();
-}
-
-void read(const Json& j, const char* key, float& out, const std::string& where) {
-    out = static_cast<float>(number(j, key, static_cast<double>(out), where));
-}
-
-void read(const Json& j, const char* key, double& out, const std::string& where) { out = number(j, key, out, where); }
-
-void read(const Json& j, const char* key, std::uint32_t& out, const std::string& where) {
-    const double v = number(j, key, out, where);
-    if (!(v >= 0 && v <= 1e9) || v != std::floor(v)) throw Failure(where + "." + key + ": a whole number is needed");
-    out = static_cast<std::uint32_t>(v);
-}
-
-std::string text(const Json& j, const char* key, const std::string& otherwise, const std::string& where) {
-    if (!j.contains(key)) return otherwise;
-    if (!j[key].is_string()) throw Failure(where + "." + key + ": a text is needed");
-    return j[key].get<std::string>();
-}
-
-void choose(const Json& j, const char* key, std::uint32_t& out, const std::map<std::string, std::uint32_t>& choices, const std::string& where) {
-    if (!j.contains(key)) return;
-    const std::string word = text(j, key, "", where);
-    const auto found = choices.find(word);
-    std::string all;
-    for (const auto& [name, ignored] : choices) all += (all.empty() ? "" : ", ") + name;
-    if (found == choices.end()) throw Failure(where + "." + key + ": \"" + word + "\" is not one of " + all);
-    out = found->second;
-}
-
-frm_vec3 vector(const Json& j, const char* key, const std::string& where) {
-    if (!j.contains(key)) return {0, 0, 0};
-    const Json& v = j[key];
-    if (!v.is_array() || v.size() != 3 || !v[0].is_number() || !v[1].is_number() || !v[2].is_number())
-        throw Failure(where + "." + key + ": three numbers are needed");
-    return {v[0].get<float>(), v[1].get<float>(), v[2].get<float>()};
-}
-
-frm_world_def read_world(const Json& j, const std::string& where) {
-    know(j, where, {"model", "surface", "gravity", "density", "viscosity", "level"});
+frm_world_def read_world(const JsonReader& j) {
+    j.allow_only({"model", "surface", "gravity", "density", "viscosity", "level"});
     frm_world_def def;
     frm_world_def_init(&def, sizeof def);
-    choose(j, "model", def.model,
-           {{"default", FRM_MODEL_DEFAULT}, {"paper", FRM_MODEL_PAPER}, {"displacement", FRM_MODEL_DISPLACEMENT}, {"own_waves", FRM_MODEL_OWN_WAVES}}, where);
-    choose(j, "surface", def.surface, {{"flat", FRM_SURFACE_FLAT}, {"none", FRM_SURFACE_NONE}}, where);
-    read(j, "gravity", def.gravity, where);
-    read(j, "density", def.density, where);
-    read(j, "viscosity", def.viscosity, where);
-    read(j, "level", def.level, where);
+    j.choose("model", def.model,
+             {{"default", FRM_MODEL_DEFAULT},
+              {"paper", FRM_MODEL_PAPER},
+              {"displacement", FRM_MODEL_DISPLACEMENT},
+              {"own_waves", FRM_MODEL_OWN_WAVES}});
+    j.choose("surface", def.surface, {{"flat", FRM_SURFACE_FLAT}, {"none", FRM_SURFACE_NONE}});
+    j.read("gravity", def.gravity);
+    j.read("density", def.density);
+    j.read("viscosity", def.viscosity);
+    j.read("level", def.level);
     return def;
 }
 
-frm_water_def read_water(const Json& j, const std::string& where) {
-    know(j, where, {"nx", "ny", "cell", "depth", "border", "border_cells", "snapshot_interval", "centre"});
+frm_water_def read_water(const JsonReader& j) {
+    j.allow_only({"nx", "ny", "cell", "depth", "border", "border_cells", "snapshot_interval", "centre"});
     frm_water_def def;
     frm_water_def_init(&def, sizeof def);
-    read(j, "nx", def.nx, where);
-    read(j, "ny", def.ny, where);
-    read(j, "cell", def.cell, where);
-    read(j, "depth", def.depth, where);
-    choose(j, "border", def.border, {{"absorbing", FRM_BORDER_ABSORBING}, {"reflecting", FRM_BORDER_REFLECTING}}, where);
-    read(j, "border_cells", def.border_cells, where);
-    read(j, "snapshot_interval", def.snapshot_interval, where);
-    if (j.contains("centre")) {
-        const Json& c = j["centre"];
-        if (!c.is_array() || c.size() != 2 || !c[0].is_number() || !c[1].is_number()) throw Failure(where + ".centre: two numbers are needed");
-        def.centre_x = c[0].get<double>();
-        def.centre_y = c[1].get<double>();
-    }
+    j.read("nx", def.nx);
+    j.read("ny", def.ny);
+    j.read("cell", def.cell);
+    j.read("depth", def.depth);
+    j.choose("border", def.border, {{"absorbing", FRM_BORDER_ABSORBING}, {"reflecting", FRM_BORDER_REFLECTING}});
+    j.read("border_cells", def.border_cells);
+    j.read("snapshot_interval", def.snapshot_interval);
+    double centre[2] = {def.centre_x, def.centre_y};
+    j.read("centre", centre);
+    def.centre_x = centre[0];
+    def.centre_y = centre[1];
     return def;
 }
 
-SceneBody read_body(const Json& j, const std::string& where) {
-    know(j, where, {"name", "map", "scale", "mass", "centre_of_mass", "motion"});
-    if (!j.contains("motion")) throw Failure(where + ".motion: is missing");
-    SceneBody body{text(j, "name", "", where), text(j, "map", "", where), {}, Motion(j["motion"], where + ".motion")};
-    if (body.map.empty()) throw Failure(where + ".map: the name of a map is needed");
-    if (body.name.empty()) body.name = body.map;
+SceneBody read_body(const JsonReader& j) {
+    j.allow_only({"name", "map", "scale", "mass", "centre_of_mass", "motion"});
+    if (!j.has("motion")) j.fail("motion", "is missing");
+    SceneBody body{"", "", j.where(), {}, Motion(j.object("motion"))};
+    j.read("map", body.map);
+    if (body.map.empty()) j.fail("map", "the name of a map is needed");
+    body.name = body.map;
+    j.read("name", body.name);
+    if (body.name.empty() || body.name.find_first_of(",\"\r\n") != std::string::npos)
+        j.fail("name", "a name without commas, quotation marks and line ends is needed");
     frm_body_def_init(&body.def, sizeof body.def);
-    read(j, "scale", body.def.scale, where);
-    read(j, "mass", body.def.mass, where);
-    body.def.centre_of_mass = vector(j, "centre_of_mass", where);
+    j.read("scale", body.def.scale);
+    j.read("mass", body.def.mass);
+    Numbers centre{};
+    j.read("centre_of_mass", centre);
+    body.def.centre_of_mass = {static_cast<float>(centre[0]), static_cast<float>(centre[1]),
+                               static_cast<float>(centre[2])};
     if (body.motion.device().empty()) body.motion.at(0, body.def.pose, body.def.twist);
     return body;
+}
+
+Json parse(const std::string& path) {
+    std::ifstream file(path);
+    if (!file || std::filesystem::is_directory(path)) throw Failure(path + ": cannot be opened");
+    try {
+        return Json::parse(file, nullptr, true, true);
+    } catch (const Json::exception& error) {
+        const std::string text =
+            error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
+        throw Failure(path + ": is not a scene: " + text.substr(text.find("] ") + 2));
+    }
+}
+
+/// "name=path" from the command line.
+void add_map(const std::string& text, std::map<std::string, std::string>& maps) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
+        throw Failure("--map " + text + ": name=FILE is needed");
+    if (!maps.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
+        throw Failure("--map " + text + ": that name was given before");
 }
 
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& maps) {
-    std::ifstream file(path);
-    if (!file) throw Failure(path + ": cannot be opened");
-    Json j;
-    try {
-        j = Json::parse(file, nullptr, true, true);
-    } catch (const Json::parse_error& error) {
-        throw Failure(path + ": " + error.what());
-    }
-    know(j, path, {"title", "dt", "seconds", "world", "water", "maps", "bodies"});
+    const Json root = parse(path);
+    const JsonReader j(root, path);
+    j.allow_only({"title", "dt", "seconds", "world", "water", "maps", "bodies"});
     Scene scene;
-    scene.title = text(j, "title", std::filesystem::path(path).stem().string(), path);
-    read(j, "dt", scene.dt, path);
-    read(j, "seconds", scene.seconds, path);
-    require_positive(scene.dt, path + ".dt");
-    require_positive(scene.seconds, path + ".seconds");
-    scene.world = read_world(j.value("world", Json::object()), path + ".world");
-    if (j.contains("water")) scene.water = read_water(j["water"], path + ".water");
+    scene.path = path;
+    scene.title = std::filesystem::path(path).stem().string();
+    j.read("title", scene.title);
+    j.read("dt", scene.dt);
+    j.read("seconds", scene.seconds);
+    if (!(scene.dt >= 1e-6 && scene.dt <= 0.1)) j.fail("dt", "a number from 1e-6 to 0.1 is needed");
+    if (!(scene.seconds > 0)) j.fail("seconds", "a number above 0 is needed");
+    const Json none = Json::object();
+    scene.world = read_world(j.has("world") ? j.object("world") : JsonReader(none, path + ".world"));
+    if (j.has("water")) scene.water = read_water(j.object("water"));
 
-    for (const std::string& map : maps) {
-        const std::size_t equals = map.find('=');
-        if (equals == 0 || equals == std::string::npos || equals + 1 == map.size()) throw Failure("--map " + map + ": name=path is needed");
-        scene.maps[map.substr(0, equals)] = map.substr(equals + 1);
-    }
-    if (j.contains("maps")) {
-        if (!j["maps"].is_object()) throw Failure(path + ".maps: an object is needed");
-        for (const auto& [name, value] : j["maps"].items()) {
-            const std::string file_name = text(j["maps"], name.c_str(), "", path + ".maps");
-            const std::filesystem::path beside = std::filesystem::path(path).parent_path() / file_name;
-            scene.maps.emplace(name, beside.string());
-        }
-    }
-    if (!j.contains("bodies") || !j["bodies"].is_array()) throw Failure(path + ".bodies: a list is needed");
-    for (const Json& body : j["bodies"]) {
-        const std::string where = path + ".bodies[" + std::to_string(scene.bodies.size()) + "]";
-        scene.bodies.push_back(read_body(body, where));
-        if (!scene.maps.count(scene.bodies.back().map))
-            throw Failure(where + ".map: \"" + scene.bodies.back().map + "\" is not in .maps; give it here or as --map " + scene.bodies.back().map + "=FILE");
+    for (const std::string& map : maps) add_map(map, scene.maps);
+    for (const auto& [name, file] : j.texts("maps"))
+        scene.maps.emplace(name, (std::filesystem::path(path).parent_path() / file).string());
+    for (const JsonReader& one : j.list("bodies")) {
+        scene.bodies.push_back(read_body(one));
+        const std::string& map = scene.bodies.back().map;
+        if (!scene.maps.count(map))
+            one.fail("map", "\"" + map + "\" is not in .maps; give it there or as --map " + map + "=FILE");
     }
     return scene;
 }

@@ -13,12 +13,13 @@ namespace frm::cli {
 
 struct SceneBody {
     std::string name, map;
+    std::string where;   ///< in the file, for messages
     frm_body_def def{};  ///< without the map
     Motion motion;
 };
 
 struct Scene {
-    std::string title;
+    std::string path, title;
     double dt = 0.002, seconds = 0;
     frm_world_def world{};
     std::optional<frm_water_def> water;
@@ -26,8 +27,8 @@ struct Scene {
     std::vector<SceneBody> bodies;
 };
 
-/// Reads a scene. `maps` ("name=path") come before the file's own, whose paths are relative to the file. Throws Failure naming the
-/// key that is wrong; keys that are not known are wrong.
+/// Reads a scene. `maps` ("name=path") come before the file's own, whose paths are relative to the file. Throws Failure
+/// naming the key that is wrong; keys that are not known are wrong.
 Scene read_scene(const std::string& path, const std::vector<std::string>& maps);
 
 }  // namespace frm::cli

@@ -1,4 +1,5 @@
-// The one exception of the run time. It never crosses the C ABI: core/api turns it into a status and the context's last-error text.
+// The one exception of the run time. It never crosses the C ABI: core/api turns it into a status and the context's
+// last-error text.
 #pragma once
 
 #include <cstdarg>

@@ -19,14 +19,15 @@ frm_recorder_def default_recorder() {
 
 }  // namespace
 
-frm_status FRM_CALL frm_device_enumerate(frm_context context, const frm_device_driver* driver, void* user, frm_device_info* list,
-                                         uint32_t capacity, uint32_t* count) {
+frm_status FRM_CALL frm_device_enumerate(frm_context context, const frm_device_driver* driver, void* user,
+                                         frm_device_info* list, uint32_t capacity, uint32_t* count) {
     return with_context(context, [&](Context&) {
         require_pointer(count, "count");
         const frm_device_driver d = device::checked_driver(driver);
         std::uint32_t seen = 0;
         const frm_status status = d.enumerate(user, list, capacity, &seen);
-        if (status != FRM_OK) throw Error(FRM_ERROR_DEVICE, "the device's driver failed in enumerate: %s", frm_status_name(status));
+        if (status != FRM_OK)
+            throw Error(FRM_ERROR_DEVICE, "the device's driver failed in enumerate: %s", frm_status_name(status));
         *count = seen;
     });
 }
@@ -79,9 +80,12 @@ frm_status FRM_CALL frm_device_stop(frm_device device) {
     return with<Device>(device, [&](Context&, Device& object) { object.stop(); });
 }
 
-frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def* def, uint64_t size) { return init_def(def, size, default_recorder()); }
+frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def* def, uint64_t size) {
+    return init_def(def, size, default_recorder());
+}
 
-frm_status FRM_CALL frm_recorder_create(frm_world world, const char* path, const frm_recorder_def* def, frm_recorder* recorder) {
+frm_status FRM_CALL frm_recorder_create(frm_world world, const char* path, const frm_recorder_def* def,
+                                        frm_recorder* recorder) {
     return with<WorldObject>(world, [&](Context& c, WorldObject& object) {
         require_pointer(path, "path");
         require_pointer(recorder, "recorder");
@@ -159,7 +163,8 @@ frm_status FRM_CALL frm_replay_get_water(frm_replay replay, frm_water* water) {
 frm_status FRM_CALL frm_replay_get_body(frm_replay replay, uint32_t index, frm_body* body) {
     return with<Replay>(replay, [&](Context&, Replay& object) {
         require_pointer(body, "body");
-        if (object.body(index) == 0) throw Error(FRM_ERROR_STATE, "there is no body %u at this point of the recording", index);
+        if (object.body(index) == 0)
+            throw Error(FRM_ERROR_STATE, "there is no body %u at this point of the recording", index);
         *body = object.body(index);
     });
 }
@@ -167,7 +172,8 @@ frm_status FRM_CALL frm_replay_get_body(frm_replay replay, uint32_t index, frm_b
 frm_status FRM_CALL frm_replay_get_map(frm_replay replay, uint32_t index, frm_map* map) {
     return with<Replay>(replay, [&](Context&, Replay& object) {
         require_pointer(map, "map");
-        if (object.map(index) == 0) throw Error(FRM_ERROR_ARGUMENT, "index: there is no map %u at this point of the recording", index);
+        if (object.map(index) == 0)
+            throw Error(FRM_ERROR_ARGUMENT, "index: there is no map %u at this point of the recording", index);
         *map = object.map(index);
     });
 }

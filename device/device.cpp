@@ -12,7 +12,8 @@ bool finite(const frm_vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y)
 
 void require_success(frm_status status, const char* what) {
     if (status == FRM_ERROR_END) throw Error(FRM_ERROR_END, "the device has no more to give");
-    if (status != FRM_OK) throw Error(FRM_ERROR_DEVICE, "the device's driver failed in %s: %s", what, frm_status_name(status));
+    if (status != FRM_OK)
+        throw Error(FRM_ERROR_DEVICE, "the device's driver failed in %s: %s", what, frm_status_name(status));
 }
 
 }  // namespace

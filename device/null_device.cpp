@@ -55,7 +55,8 @@ frm_status FRM_CALL stop(void*, void*) { return FRM_OK; }
 }  // namespace
 
 const frm_device_driver& null_driver() {
-    static const frm_device_driver driver{sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop};
+    static const frm_device_driver driver{
+        sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop};
     return driver;
 }
 

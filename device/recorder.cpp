@@ -59,7 +59,9 @@ void Recorder::add_device(Device& device) {
     devices_.push_back(&device);
 }
 
-void Recorder::forget(Device& device) { std::replace(devices_.begin(), devices_.end(), &device, static_cast<Device*>(nullptr)); }
+void Recorder::forget(Device& device) {
+    std::replace(devices_.begin(), devices_.end(), &device, static_cast<Device*>(nullptr));
+}
 
 void Recorder::exchanged(std::uint32_t device, const frm_device_command& command, const frm_device_state& state) {
     writer_.write(event::Exchange{device, command.wrench, state});

@@ -1,4 +1,5 @@
-// What a recording holds (docs/format.md): events in the order in which they happened, in zstd blocks that are each whole or lost.
+// What a recording holds (docs/format.md): events in the order in which they happened, in zstd blocks that are each
+// whole or lost.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,19 @@ constexpr std::uint32_t recording_version = 1;
 constexpr std::uint32_t block_mark = 0x4B4C4246;  // "FBLK"
 
 enum class EventType : std::uint8_t {
-    world = 1, map, water, water_end, height, pressure, body, body_end, motion, tick, device, exchange, end
+    world = 1,
+    map,
+    water,
+    water_end,
+    height,
+    pressure,
+    body,
+    body_end,
+    motion,
+    tick,
+    device,
+    exchange,
+    end
 };
 
 namespace event {
@@ -75,8 +88,9 @@ struct End {
 
 }  // namespace event
 
-using Event = std::variant<event::World, event::Map, event::Water, event::WaterEnd, event::Height, event::Pressure, event::Body,
-                           event::BodyEnd, event::Motion, event::Tick, event::Device, event::Exchange, event::End>;
+using Event =
+    std::variant<event::World, event::Map, event::Water, event::WaterEnd, event::Height, event::Pressure, event::Body,
+                 event::BodyEnd, event::Motion, event::Tick, event::Device, event::Exchange, event::End>;
 
 /// Appends events to a file `path`.part, which close() renames to `path`.
 class RecordingWriter {

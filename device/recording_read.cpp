@@ -58,10 +58,12 @@ event::Map read_map(ByteReader& r) {
 event::Water read_water(ByteReader& r) {
     event::Water e;
     FieldDef& f = e.def.field;
-    f.nx = static_cast<std::int32_t>(r.u32()), f.ny = static_cast<std::int32_t>(r.u32()), f.cell = r.f32(), f.depth = r.f32();
+    f.nx = static_cast<std::int32_t>(r.u32()), f.ny = static_cast<std::int32_t>(r.u32()), f.cell = r.f32(),
+    f.depth = r.f32();
     f.border = r.u32() ? Border::reflecting : Border::absorbing, f.border_cells = static_cast<std::int32_t>(r.u32());
     e.def.centre_x = r.f64(), e.def.centre_y = r.f64(), e.def.snapshot_interval = r.f32();
-    if (f.nx < 8 || f.nx > 8192 || f.ny < 8 || f.ny > 8192 || f.border_cells < 0 || f.border_cells > 64 || !(f.cell > 0) || !(f.depth > 0))
+    if (f.nx < 8 || f.nx > 8192 || f.ny < 8 || f.ny > 8192 || f.border_cells < 0 || f.border_cells > 64 ||
+        !(f.cell > 0) || !(f.depth > 0))
         throw Error(FRM_ERROR_CORRUPT, "the water's size is out of range");
     return e;
 }
@@ -118,19 +120,32 @@ event::Exchange read_exchange(ByteReader& r) {
 Event read_event(ByteReader& r) {
     const std::uint8_t type = r.u8();
     switch (static_cast<EventType>(type)) {
-        case EventType::world: return read_world(r);
-        case EventType::map: return read_map(r);
-        case EventType::water: return read_water(r);
-        case EventType::water_end: return event::WaterEnd{};
-        case EventType::height: return event::Height{read_values(r)};
-        case EventType::pressure: return event::Pressure{read_values(r)};
-        case EventType::body: return read_body(r);
-        case EventType::body_end: return event::BodyEnd{r.u32()};
-        case EventType::motion: return read_motion(r);
-        case EventType::tick: return read_tick(r);
-        case EventType::device: return read_device(r);
-        case EventType::exchange: return read_exchange(r);
-        case EventType::end: return event::End{r.u64()};
+        case EventType::world:
+            return read_world(r);
+        case EventType::map:
+            return read_map(r);
+        case EventType::water:
+            return read_water(r);
+        case EventType::water_end:
+            return event::WaterEnd{};
+        case EventType::height:
+            return event::Height{read_values(r)};
+        case EventType::pressure:
+            return event::Pressure{read_values(r)};
+        case EventType::body:
+            return read_body(r);
+        case EventType::body_end:
+            return event::BodyEnd{r.u32()};
+        case EventType::motion:
+            return read_motion(r);
+        case EventType::tick:
+            return read_tick(r);
+        case EventType::device:
+            return read_device(r);
+        case EventType::exchange:
+            return read_exchange(r);
+        case EventType::end:
+            return event::End{r.u64()};
     }
     throw Error(FRM_ERROR_CORRUPT, "an event of type %u is not known", type);
 }
@@ -154,7 +169,9 @@ RecordingReader::RecordingReader(const char* path) : path_(path) {
         throw Error(FRM_ERROR_CORRUPT, "%s: this is not a recording (its first bytes are not the format's)", path);
     const std::uint32_t version = r.u32();
     if (version != recording_version)
-        throw Error(FRM_ERROR_VERSION, "%s: recording version %u; this library reads version %u", path, version, recording_version);
+        throw Error(FRM_ERROR_VERSION, "%s: recording version %u; this library reads version %u", path, version,
+                    recording_version);
+    if (r.u32() != 0) throw Error(FRM_ERROR_VERSION, "%s: the header has flags that this library does not know", path);
     rewind();
 }
 
@@ -170,7 +187,8 @@ bool RecordingReader::next_block() {
     if (left < block_header_bytes) return false;
     ByteReader r(file_.data() + at_file_, left, path_.c_str());
     if (r.u32() != block_mark) throw Error(FRM_ERROR_CORRUPT, "%s: block %zu is damaged", path_.c_str(), blocks_);
-    r.u32();
+    if (r.u32() != 0)
+        throw Error(FRM_ERROR_CORRUPT, "%s: block %zu: its reserved field is not 0", path_.c_str(), blocks_);
     const std::uint64_t stored = r.u64(), raw = r.u64();
     if (stored > r.left()) return false;
     if (raw > largest_block) throw Error(FRM_ERROR_CORRUPT, "%s: block %zu is too large", path_.c_str(), blocks_);

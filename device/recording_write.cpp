@@ -147,7 +147,9 @@ void RecordingWriter::close() {
     if (std::fclose(file_) != 0 && failure_ == 0) failure_ = errno;
     file_ = nullptr;
     if (failure_ == 0 && std::rename(part_.c_str(), path_.c_str()) != 0) failure_ = errno;
-    if (failure_ != 0) throw Error(FRM_ERROR_FILE, "%s: %s; what was written is in %s", path_.c_str(), std::strerror(failure_), part_.c_str());
+    if (failure_ != 0)
+        throw Error(FRM_ERROR_FILE, "%s: %s; what was written is in %s", path_.c_str(), std::strerror(failure_),
+                    part_.c_str());
 }
 
 }  // namespace frm::device

@@ -32,7 +32,8 @@ void Replay::release() {
     maps_.clear();
 }
 
-// A caller finds the world as it was just before the next tick: water, bodies and maps are there to look at before the first step.
+// A caller finds the world as it was just before the next tick: water, bodies and maps are there to look at before the
+// first step.
 void Replay::advance_to_tick() {
     Event e;
     has_tick_ = false;
@@ -53,7 +54,9 @@ void Replay::survey() {
         if (std::holds_alternative<event::Water>(e)) info_.has_water = 1;
     }
     info_.torn = reader_.torn();
-    if (info_.torn) context_.log(FRM_LOG_WARNING, "the recording was cut off after %llu ticks", static_cast<unsigned long long>(info_.ticks));
+    if (info_.torn)
+        context_.log(FRM_LOG_WARNING, "the recording was cut off after %llu ticks",
+                     static_cast<unsigned long long>(info_.ticks));
 }
 
 World& Replay::the_world() {
@@ -62,7 +65,8 @@ World& Replay::the_world() {
 }
 
 Replay::ReplayedBody& Replay::the_body(std::uint32_t id) {
-    if (id >= bodies_.size() || !bodies_[id].body) throw Error(FRM_ERROR_CORRUPT, "recording: body %u is not there", id);
+    if (id >= bodies_.size() || !bodies_[id].body)
+        throw Error(FRM_ERROR_CORRUPT, "recording: body %u is not there", id);
     return bodies_[id];
 }
 
@@ -94,7 +98,8 @@ void Replay::apply(const event::WaterEnd&) {
 
 void Replay::apply(const event::Height& e) {
     const Water* water = the_world().water();
-    if (!water || e.values.size() != water->field.cells()) throw Error(FRM_ERROR_CORRUPT, "recording: heights do not fit the water");
+    if (!water || e.values.size() != water->field.cells())
+        throw Error(FRM_ERROR_CORRUPT, "recording: heights do not fit the water");
     the_world().set_height(e.values.data());
 }
 

@@ -23,8 +23,8 @@ std::unique_ptr<ReplayDevice> read(const ReplaySource& source) {
     while (reader.next(e)) {
         if (const auto* world = std::get_if<event::World>(&e)) {
             if (world->axes != source.axes)
-                throw Error(FRM_ERROR_STATE, "%s: recorded with other axes (frm_axes %u) than this context's (%u)", source.path,
-                            world->axes, source.axes);
+                throw Error(FRM_ERROR_STATE, "%s: recorded with other axes (frm_axes %u) than this context's (%u)",
+                            source.path, world->axes, source.axes);
         } else if (const auto* device = std::get_if<event::Device>(&e)) {
             if (devices++ == source.device) out->device = *device;
         } else if (const auto* exchange = std::get_if<event::Exchange>(&e)) {
@@ -32,7 +32,8 @@ std::unique_ptr<ReplayDevice> read(const ReplaySource& source) {
         }
     }
     if (source.device >= devices)
-        throw Error(FRM_ERROR_STATE, "%s: holds %u devices, so there is no device %u", source.path, devices, source.device);
+        throw Error(FRM_ERROR_STATE, "%s: holds %u devices, so there is no device %u", source.path, devices,
+                    source.device);
     return out;
 }
 
@@ -75,7 +76,8 @@ frm_status FRM_CALL stop(void*, void*) { return FRM_OK; }
 }  // namespace
 
 const frm_device_driver& replay_driver() {
-    static const frm_device_driver driver{sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop};
+    static const frm_device_driver driver{
+        sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop};
     return driver;
 }
 

@@ -216,7 +216,7 @@ typedef struct frm_map_info {
     float density;            /* of the fluid baked, kg/m^3 */
     float viscosity;          /* kinematic, of the fluid baked, m^2/s */
     float reynolds;           /* base_speed * reference_length / viscosity */
-    float reynolds_solved;    /* what the solver's grid could carry; less than or equal to `reynolds` */
+    float reynolds_solved;    /* at the viscosity that the solver's grid could carry; at most `reynolds` */
     float reference_length;   /* m; the square root of the projected area, mean over the directions */
     float quantisation_error; /* largest error of a stored force, as a share of the peak force on the whole object */
     float area;               /* of the surface, m^2 */
@@ -257,11 +257,13 @@ FRM_API frm_status FRM_CALL frm_map_get_provenance(frm_map map, char *text, uint
 
 /* ---- World ---------------------------------------------------------------------------------------------------- */
 
-/* What of the paper is repaired; a sum. FRM_MODEL_PAPER is the paper's method to the letter. */
+/* What of the paper's coupling of bodies and waves (section 6.3) is repaired; a sum. FRM_MODEL_PAPER repairs nothing
+ * of it. The exact clip against the surface, means and fluctuations apart, and the open border are always there. */
 typedef enum frm_model {
     FRM_MODEL_PAPER = 0,
     /* Bodies push the water by the volume that they displace (conserves volume, leaves no current behind), instead
-     * of forcing the water's velocity inside them (section 6.3). */
+     * of forcing the water's velocity inside them; volume and pressure reach the surface the wider the deeper they
+     * are, instead of directly. */
     FRM_MODEL_DISPLACEMENT = 1,
     /* A body does not feel the part of the water's velocity that it made itself: the map's stream holds that flow
      * already. Without it, relative velocity and drag vanish where the body drags the water along. */
@@ -532,7 +534,7 @@ FRM_API frm_status FRM_CALL frm_device_open_null(frm_context context, frm_device
 
 /* A device that moves as one in a recording did: exchange k gives the state recorded in exchange k of device
  * `index` (0 for the first that was added to the recorder); after the last, FRM_ERROR_END. Forces are swallowed.
- * FRM_ERROR_STATE if the recording holds no such device. [offline] */
+ * FRM_ERROR_STATE if the recording holds no such device, or was made with other axes than this context's. [offline] */
 FRM_API frm_status FRM_CALL frm_device_open_replay(frm_context context, const char *path, uint32_t index,
                                                    frm_device *device);
 

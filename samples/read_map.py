@@ -55,9 +55,8 @@ class Map:
         require(len(chunks[b"GEOM", 0]) == 8 + 12 * (vertices + self.triangles), "GEOM has another size")
         self.sources = struct.unpack_from("<I", chunks[b"REGN", 0])[0]
         self.n, count = struct.unpack_from("<II", chunks[b"DIRS", 0])
-        n = self.n
-        lattice = [(i, j, k) for i in range(-n, n + 1) for j in range(-n, n + 1) for k in range(-n, n + 1)
-                   if abs(i) + abs(j) + abs(k) == n]
+        span = range(-self.n, self.n + 1)
+        lattice = [(i, j, k) for i in span for j in span for k in span if abs(i) + abs(j) + abs(k) == self.n]
         require(count == len(lattice), "DIRS does not match its frequency")
         self.index = {point: number for number, point in enumerate(lattice)}
         self.directions = [floats(chunks[b"DIRS", 0], 8)[3 * d:3 * d + 3] for d in range(count)]
@@ -85,8 +84,7 @@ class Map:
         a, b = abs(e[0]) * scale, abs(e[1]) * scale
         c = max(0.0, n - a - b)
         i, j, k = min(int(a), n), min(int(b), n), min(int(c), n)
-        fa, fb = a - i, b - j
-        rest = n - (i + j + k)
+        fa, fb, rest = a - i, b - j, n - (i + j + k)
         found = {0: [((i, j, k), 1.0)],
                  1: [((i + 1, j, k), fa), ((i, j + 1, k), fb), ((i, j, k + 1), 1 - fa - fb)],
                  2: [((i, j + 1, k + 1), 1 - fa), ((i + 1, j, k + 1), 1 - fb), ((i + 1, j + 1, k), fa + fb - 1)]}[rest]

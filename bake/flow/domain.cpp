@@ -50,7 +50,7 @@ void check(const FlowCase& c) {
     require(positive(c.speed, 1e-6, 1e4), "speed", number(c.speed), "from 1e-6 to 1e4 m/s");
     require(positive(c.viscosity, 1e-12, 1e6), "viscosity", number(c.viscosity), "from 1e-12 to 1e6 m^2/s");
     require(positive(c.density, 1e-6, 1e6), "density", number(c.density), "from 1e-6 to 1e6 kg/m^3");
-    require(positive(c.cells_across, 4, 512), "cells_across", number(c.cells_across), "from 4 to 512");
+    require(positive(c.resolution, 4, 512), "resolution", number(c.resolution), "from 4 to 512");
     require(c.reference_length == 0 || positive(c.reference_length, 1e-6, 1e6), "reference_length",
             number(c.reference_length), "0 (automatic) or from 1e-6 to 1e6 m");
     require(positive(c.start_up, 0.5, 1e4), "start_up", number(c.start_up), "from 0.5 to 10000 reference lengths");
@@ -202,7 +202,7 @@ Walls walls_of(const std::vector<Segment>& segments, const Domain& d) {
     constexpr double mib = 1 << 20;
     throw BakeError("flow: about " + number(bytes / mib) + " MiB are needed and memory_limit is " +
                     number(static_cast<double>(limit) / mib) +
-                    " MiB; lower cells_across or give a larger reference_length");
+                    " MiB; lower resolution or give a larger reference_length");
 }
 
 void advise(const Surface& surface, const Vec3d& size, const FlowCase& c, FlowPlan& plan) {
@@ -217,8 +217,8 @@ void advise(const Surface& surface, const Vec3d& size, const FlowCase& c, FlowPl
     if (thickness < 2 * plan.cell) {
         say("the body is about " + number(thickness / plan.cell) +
             " cells thick (twice its volume over its surface); below 2 the drag of thin parts is 10 to 15 % off: "
-            "cells_across " +
-            number(std::ceil(c.cells_across * 2 * plan.cell / std::max(thickness, 1e-9))) + " would give 2");
+            "resolution " +
+            number(std::ceil(c.resolution * 2 * plan.cell / std::max(thickness, 1e-9))) + " would give 2");
     }
     if (plan.reynolds_solved < 0.999 * plan.reynolds) {
         say("Reynolds number " + number(plan.reynolds) + " is solved as " + number(plan.reynolds_solved) +
@@ -254,14 +254,14 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     }
     const double across = c.section ? size.y : std::sqrt(plan.projected_area);
     plan.reference_length = c.reference_length > 0 ? c.reference_length : across;
-    plan.cell = plan.reference_length / c.cells_across;
+    plan.cell = plan.reference_length / c.resolution;
     plan.reynolds = c.speed * plan.reference_length / c.viscosity;
-    d.length = c.cells_across;
+    d.length = c.resolution;
     // A relaxation time far above 1 would move interpolated walls, so a slow, thick fluid takes a lower lattice speed.
     d.stream_speed = std::min(lattice_speed, most_viscosity * plan.reynolds / d.length);
     if (d.stream_speed < least_speed) {
-        throw BakeError("flow: Reynolds number " + number(plan.reynolds) + " is too low for cells_across " +
-                        number(c.cells_across) + "; it must be at least " +
+        throw BakeError("flow: Reynolds number " + number(plan.reynolds) + " is too low for resolution " +
+                        number(c.resolution) + "; it must be at least " +
                         number(least_speed * d.length / most_viscosity) + ": raise speed or lower viscosity");
     }
     plan.time_step = d.stream_speed * plan.cell / c.speed;
@@ -321,7 +321,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     const double count = std::max(8.0, std::floor(c.duration * per_length / interval));
     if (start + count * interval > static_cast<double>(most_steps)) {
         throw BakeError("flow: start_up and duration take " + number(start + count * interval) +
-                        " steps; lower duration or cells_across");
+                        " steps; lower duration or resolution");
     }
     d.interval_steps = static_cast<std::uint32_t>(interval);
     d.start_steps = static_cast<std::uint32_t>(start);

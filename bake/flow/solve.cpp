@@ -65,7 +65,7 @@ public:
           started_(Clock::now()) {
         if (wall_.stretches() == 0) {
             throw BakeError(
-                "flow: the lattice does not meet the body; raise cells_across or check the surface's scale");
+                "flow: the lattice does not meet the body; raise resolution or check the surface's scale");
         }
         run_begin_.assign(domain.grid.rows() + 1, 0);
         for (const SolidRun& run : body_.solid) ++run_begin_[run.row + 1];
@@ -211,10 +211,10 @@ private:
         if (sound) return;
         char text[256];
         std::snprintf(text, sizeof text,
-                      "flow: the solution diverged at step %llu of %llu (Reynolds number %.4g on %.4g cells_across); "
-                      "raise cells_across or lower speed",
+                      "flow: the solution diverged at step %llu of %llu (Reynolds number %.4g on %.4g resolution); "
+                      "raise resolution or lower speed",
                       static_cast<unsigned long long>(step), static_cast<unsigned long long>(domain_.plan.steps),
-                      domain_.plan.reynolds_solved, case_.cells_across);
+                      domain_.plan.reynolds_solved, case_.resolution);
         throw BakeError(text);
     }
 
@@ -301,7 +301,7 @@ FlowSeries solve_flow(const Surface& surface, const Regions& regions, const Flow
         return flow::Run(domain, regions, flow_case, progress).solve();
     } catch (const std::bad_alloc&) {
         throw BakeError("flow: out of memory; " + std::to_string(domain.plan.bytes >> 20) +
-                        " MiB are needed: lower cells_across");
+                        " MiB are needed: lower resolution");
     }
 }
 

@@ -73,7 +73,8 @@ void fill_fluctuations(Map& map, const std::vector<Fluctuation>& directions, dou
         map.step.push_back(static_cast<float>(step));
         std::int16_t* out = map.fluctuation.data() + d * count;
         if (!(step > 0)) continue;
-        for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<std::int16_t>(std::lround(static_cast<double>(directions[d][i]) / step));
+        for (std::size_t i = 0; i < count; ++i)
+            out[i] = static_cast<std::int16_t>(std::lround(static_cast<double>(directions[d][i]) / step));
         for (std::size_t s = 0; s < map.samples; ++s)
             worst = std::max(worst, length(whole_fluctuation(map, out, s, static_cast<double>(map.step.back())) -
                                            whole_fluctuation(map, directions[d].data(), s, 1.0)));

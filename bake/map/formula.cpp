@@ -16,8 +16,10 @@ Map formula_map(const Surface& surface, std::uint32_t sources, std::uint32_t fre
     const SurfaceProperties shape = measure(surface);
     const double size = std::cbrt(shape.volume), dynamic = 0.5 * density * speed * speed;
     const double reynolds = speed * size / viscosity;
-    map.facts = {static_cast<float>(speed), static_cast<float>(20 * size / speed), static_cast<float>(density),
-                 static_cast<float>(viscosity), static_cast<float>(size), static_cast<float>(reynolds), static_cast<float>(reynolds), 0};
+    map.facts = {static_cast<float>(speed),    static_cast<float>(20 * size / speed),
+                 static_cast<float>(density),  static_cast<float>(viscosity),
+                 static_cast<float>(size),     static_cast<float>(reynolds),
+                 static_cast<float>(reynolds), 0};
 
     std::vector<Fluctuation> fluctuations;
     for (std::uint32_t d = 0; d < map.directions.count(); ++d) {

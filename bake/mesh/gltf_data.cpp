@@ -18,12 +18,16 @@ constexpr std::size_t kMostElements = 6'000'000;
 std::size_t component_size(int type) {
     switch (type) {
         case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return 1;
         case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return 2;
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-        default: return 0;
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return 4;
+        default:
+            return 0;
     }
 }
 
@@ -54,17 +58,22 @@ double read_component(const unsigned char* from, int type, bool normalized) {
             value = read<std::uint16_t>(from);
             largest = 65535;
             break;
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return static_cast<double>(read<float>(from));
-        default: break;
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return static_cast<double>(read<float>(from));
+        default:
+            break;
     }
     return normalized ? std::max(value / largest, -1.0) : value;
 }
 
 std::uint32_t read_index(const unsigned char* from, int type) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return *from;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return read<std::uint16_t>(from);
-        default: return read<std::uint32_t>(from);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return *from;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return read<std::uint16_t>(from);
+        default:
+            return read<std::uint32_t>(from);
     }
 }
 

@@ -24,9 +24,9 @@ constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 constexpr int kDeepestNesting = 64;
 
 // Required extensions that do not change where the triangles are, or that gltf_data.cpp implements.
-constexpr std::array kHarmlessPrefixes = {
-    "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",        "KHR_lights_",
-    "EXT_lights_",    "KHR_xmp",      "ADOBE_",       "KHR_mesh_quantization"};
+constexpr std::array kHarmlessPrefixes = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                          "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
+                                          "KHR_xmp",        "ADOBE_",       "KHR_mesh_quantization"};
 
 bool starts_with(const std::string& text, const std::string& prefix) {
     return text.compare(0, prefix.size(), prefix) == 0;

@@ -16,20 +16,23 @@ struct Surface {
     std::vector<Vec3d> vertices;
     std::vector<Triangle> triangles;
 
-    Vec3d corner(std::size_t triangle, int i) const { return vertices[triangles[triangle][static_cast<std::size_t>(i)]]; }
+    Vec3d corner(std::size_t triangle, int i) const {
+        return vertices[triangles[triangle][static_cast<std::size_t>(i)]];
+    }
 };
 
-/// A surface split into haptic regions (section 4 of the paper): region[t] is the region of triangle t, 0 <= region[t] < count.
+/// A surface split into haptic regions (section 4 of the paper): region[t] is the region of triangle t, 0 <= region[t]
+/// < count.
 struct Regions {
     std::vector<std::uint32_t> region;
     std::uint32_t count = 0;
 };
 
 struct SurfaceProperties {
-    double area = 0;        ///< m^2
-    double volume = 0;      ///< m^3, positive
-    Vec3d centroid;         ///< of the enclosed volume, m
-    Vec3d low, high;        ///< bounding box, m
+    double area = 0;    ///< m^2
+    double volume = 0;  ///< m^3, positive
+    Vec3d centroid;     ///< of the enclosed volume, m
+    Vec3d low, high;    ///< bounding box, m
 };
 
 SurfaceProperties measure(const Surface& surface);

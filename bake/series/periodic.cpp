@@ -49,7 +49,8 @@ PeriodicSeries make_periodic(const std::vector<float>& signal, const PeriodicSpe
     out.mean = static_cast<double>(spectrum[0].r) / n;
     const std::uint32_t highest = std::min(spec.harmonics, n / 2 - 1);
     for (std::uint32_t k = 1; k <= highest; ++k) {
-        const double amplitude = 2 * std::hypot(static_cast<double>(spectrum[k].r), static_cast<double>(spectrum[k].i)) / n;
+        const double amplitude =
+            2 * std::hypot(static_cast<double>(spectrum[k].r), static_cast<double>(spectrum[k].i)) / n;
         if (amplitude < spec.threshold) continue;
         kept[k] = {spectrum[k].r / static_cast<float>(n), spectrum[k].i / static_cast<float>(n)};
     }

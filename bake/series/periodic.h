@@ -1,4 +1,5 @@
-// Makes a stretch of a fluctuating signal periodic and smooth (section 5.2 of the paper), so that the run time can go round it.
+// Makes a stretch of a fluctuating signal periodic and smooth (section 5.2 of the paper), so that the run time can go
+// round it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@ struct PeriodicSpec {
     std::uint32_t period = 0;     ///< samples of the input that make one period; even
     std::uint32_t samples = 0;    ///< of one period of the output; even
     std::uint32_t harmonics = 0;  ///< the highest kept, at most samples / 2 - 1
-    double threshold = 0;         ///< harmonics of a smaller amplitude are dropped (the paper's rule); same unit as the signal
+    double threshold = 0;  ///< harmonics of a smaller amplitude are dropped (the paper's rule); same unit as the signal
 };
 
 struct PeriodicSeries {
@@ -20,9 +21,9 @@ struct PeriodicSeries {
     std::vector<float> fluctuation;  ///< [samples], mean zero
 };
 
-/// One period made of the input's first `period` samples. The samples beyond them (`signal` may be up to twice as long) are faded
-/// into its beginning, so that the end runs on into the start: a Fourier series of a jump would ring. Then a Fourier series
-/// (KissFFT) with the harmonics that the spec keeps, evaluated at the output's samples.
+/// One period made of the input's first `period` samples. The samples beyond them (`signal` may be up to twice as
+/// long) are faded into its beginning, so that the end runs on into the start: a Fourier series of a jump would ring.
+/// Then a Fourier series (KissFFT) with the harmonics that the spec keeps, evaluated at the output's samples.
 PeriodicSeries make_periodic(const std::vector<float>& signal, const PeriodicSpec& spec);
 
 /// The least even number from n on whose prime factors are 2, 3 and 5 only: lengths at which the FFT is fast.

@@ -25,7 +25,8 @@ Peak strongest_peak(const std::vector<float>& signal, double interval) {
     kiss_fftr(plan.get(), windowed.data(), spectrum.data());
 
     const auto amplitude = [&](std::size_t k) {
-        return 2 * std::hypot(static_cast<double>(spectrum[k].r), static_cast<double>(spectrum[k].i)) / static_cast<double>(n);
+        return 2 * std::hypot(static_cast<double>(spectrum[k].r), static_cast<double>(spectrum[k].i)) /
+               static_cast<double>(n);
     };
     std::size_t best = 2;
     for (std::size_t k = 3; k + 1 < spectrum.size(); ++k)

@@ -33,7 +33,8 @@ void require_known(const T* value, const char* name) {
 template <typename T>
 void require_size(const T* value, const char* name) {
     if (value->struct_size < sizeof(std::uint32_t) || value->struct_size > largest_struct)
-        throw Error(FRM_ERROR_VERSION, "%s.struct_size = %u is not a size: set it, or call the _def_init", name, value->struct_size);
+        throw Error(FRM_ERROR_VERSION, "%s.struct_size = %u is not a size: set it, or call the _def_init", name,
+                    value->struct_size);
 }
 
 /// Fills a def, never past the caller's size.
@@ -47,7 +48,8 @@ frm_status init_def(T* def, std::uint64_t size, T defaults) {
     return FRM_OK;
 }
 
-/// Reads a def of any version: what the caller's lacks keeps its default, what we do not know must be zero. Null: all defaults.
+/// Reads a def of any version: what the caller's lacks keeps its default, what we do not know must be zero. Null: all
+/// defaults.
 template <typename T>
 T read_def(const T* def, T defaults, const char* name) {
     defaults.struct_size = sizeof(T);
@@ -82,8 +84,8 @@ inline void write_text(const char* from, std::size_t length, char* text, std::ui
     *size = length + 1;
     if (!text) return;
     if (capacity < length + 1)
-        throw Error(FRM_ERROR_CAPACITY, "the buffer takes %llu bytes; %llu are needed", static_cast<unsigned long long>(capacity),
-                    static_cast<unsigned long long>(length + 1));
+        throw Error(FRM_ERROR_CAPACITY, "the buffer takes %llu bytes; %llu are needed",
+                    static_cast<unsigned long long>(capacity), static_cast<unsigned long long>(length + 1));
     std::memcpy(text, from, length);
     text[length] = 0;
 }

@@ -23,18 +23,28 @@ Axes::Axes(std::uint32_t axes) : axes_(axes) {
         body_ = body;
     };
     switch (axes) {
-        case FRM_AXES_Y_UP_RIGHT: set(2, 0, 1, 1, {0.5f, 0.5f, 0.5f, 0.5f}, {}); break;
-        case FRM_AXES_Y_UP_LEFT: set(0, 2, 1, -1, {0, half_root, -half_root, 0}, {1, 0, 0, 0}); break;
-        case FRM_AXES_Z_UP_LEFT: set(1, 0, 2, -1, {half_root, -half_root, 0, 0}, {0, half_root, -half_root, 0}); break;
-        default: break;
+        case FRM_AXES_Y_UP_RIGHT:
+            set(2, 0, 1, 1, {0.5f, 0.5f, 0.5f, 0.5f}, {});
+            break;
+        case FRM_AXES_Y_UP_LEFT:
+            set(0, 2, 1, -1, {0, half_root, -half_root, 0}, {1, 0, 0, 0});
+            break;
+        case FRM_AXES_Z_UP_LEFT:
+            set(1, 0, 2, -1, {half_root, -half_root, 0, 0}, {0, half_root, -half_root, 0});
+            break;
+        default:
+            break;
     }
 }
 
 Vec3f Axes::mirror(const Vec3f& v) const {
     switch (axes_) {
-        case FRM_AXES_Y_UP_LEFT: return {-v.x, v.y, v.z};
-        case FRM_AXES_Z_UP_LEFT: return {v.x, v.z, v.y};
-        default: return v;
+        case FRM_AXES_Y_UP_LEFT:
+            return {-v.x, v.y, v.z};
+        case FRM_AXES_Z_UP_LEFT:
+            return {v.x, v.z, v.y};
+        default:
+            return v;
     }
 }
 
@@ -54,7 +64,8 @@ Pose Axes::pose_in(const frm_pose& pose, const char* what) const {
 
 Twist Axes::twist_in(const frm_twist& twist, const char* what) const {
     if (!within(twist.linear, 1e4f)) throw Error(FRM_ERROR_ARGUMENT, "%s.linear is not finite or beyond 1e4 m/s", what);
-    if (!within(twist.angular, 1e4f)) throw Error(FRM_ERROR_ARGUMENT, "%s.angular is not finite or beyond 1e4 rad/s", what);
+    if (!within(twist.angular, 1e4f))
+        throw Error(FRM_ERROR_ARGUMENT, "%s.angular is not finite or beyond 1e4 rad/s", what);
     return {vector_in(twist.linear), axial_in(twist.angular)};
 }
 

@@ -1,5 +1,5 @@
-// The host's axes and ours (right-handed, z up). The world's axes are permuted (matrix C); a body's own axes are the mesh file's,
-// which some hosts' importers mirror (matrix D, host to mesh). A rotation then is R = C R_host D^-1.
+// The host's axes and ours (right-handed, z up). The world's axes are permuted (matrix C); a body's own axes are the
+// mesh file's, which some hosts' importers mirror (matrix D, host to mesh). A rotation then is R = C R_host D^-1.
 #pragma once
 
 #include "core/body/body.h"
@@ -53,9 +53,9 @@ private:
     Vec3f mirror(const Vec3f& v) const;
 
     std::uint32_t axes_;
-    int from_[3] = {0, 1, 2};  ///< our axis i is the host's axis from_[i]
-    float hand_ = 1;           ///< determinant of C (and of D)
-    Quat<float> world_, body_; ///< the rotations hand * C and hand * D
+    int from_[3] = {0, 1, 2};   ///< our axis i is the host's axis from_[i]
+    float hand_ = 1;            ///< determinant of C (and of D)
+    Quat<float> world_, body_;  ///< the rotations hand * C and hand * D
 };
 
 }  // namespace frm::api

@@ -62,7 +62,8 @@ frm_status FRM_CALL frm_body_get_def(frm_body body, frm_body_def* def) {
         const BodyDef& d = object.body.def;
         frm_body_def out{};
         out.scale = d.scale;
-        out.map = c.find_handle(Kind::map, [&](const Object& o) { return static_cast<const MapObject&>(o).map == d.map; });
+        out.map =
+            c.find_handle(Kind::map, [&](const Object& o) { return static_cast<const MapObject&>(o).map == d.map; });
         out.mass = d.mass;
         out.centre_of_mass = c.axes().body_out(d.centre_of_mass);
         out.pose = c.axes().pose_out(d.pose);
@@ -111,7 +112,8 @@ frm_status FRM_CALL frm_body_get_state(frm_body body, frm_body_state* state) {
         out.wet_area = b.wet_area;
         out.displaced_volume = b.displaced_volume;
         out.relative_speed = b.relative_speed;
-        out.reynolds = b.relative_speed * b.def.map->facts.reference_length * b.def.scale / object.world.world.def().fluid.viscosity;
+        out.reynolds = b.relative_speed * b.def.map->facts.reference_length * b.def.scale /
+                       object.world.world.def().fluid.viscosity;
         out.wet_sources = b.wet_sources;
         out.pose = c.axes().pose_out(b.def.pose);
         out.twist = c.axes().twist_out(b.def.twist);
@@ -126,7 +128,8 @@ frm_status FRM_CALL frm_body_get_sources(frm_body body, frm_source_state* source
         *count = static_cast<std::uint32_t>(b.sources.size());
         if (!sources) return;
         if (capacity < b.sources.size())
-            throw Error(FRM_ERROR_CAPACITY, "the buffer takes %u sources; the body has %zu", capacity, b.sources.size());
+            throw Error(FRM_ERROR_CAPACITY, "the buffer takes %u sources; the body has %zu", capacity,
+                        b.sources.size());
         for (std::size_t l = 0; l < b.sources.size(); ++l) {
             const SourceState& s = b.sources[l];
             frm_source_state out{};

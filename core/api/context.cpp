@@ -18,8 +18,8 @@ std::uint64_t make_handle(std::uint32_t generation, Kind kind, std::uint8_t cont
 
 std::uint32_t index_in(std::uint64_t handle) { return static_cast<std::uint32_t>(handle & 0xFFFFFFu); }
 
-// The only thing that contexts share: which of them exist. Generations go on from one context of a place to the next, so that an
-// old handle never names a new object.
+// The only thing that contexts share: which of them exist. Generations go on from one context of a place to the next,
+// so that an old handle never names a new object.
 struct Place {
     std::atomic<Context*> context{nullptr};
     std::atomic<std::uint64_t> handle{0};
@@ -37,11 +37,12 @@ std::uint32_t next_generation(std::atomic<std::uint32_t>& generations) {
 }
 
 void* FRM_CALL default_allocate(void*, std::uint64_t size, std::uint64_t alignment) {
-    return ::operator new(static_cast<std::size_t>(size), std::align_val_t{static_cast<std::size_t>(alignment)}, std::nothrow);
+    return ::operator new (static_cast<std::size_t>(size), std::align_val_t{static_cast<std::size_t>(alignment)},
+                           std::nothrow);
 }
 
 void FRM_CALL default_release(void*, void* memory, std::uint64_t, std::uint64_t alignment) {
-    ::operator delete(memory, std::align_val_t{static_cast<std::size_t>(alignment)});
+    ::operator delete (memory, std::align_val_t{static_cast<std::size_t>(alignment)});
 }
 
 frm_context_def default_context() {
@@ -56,15 +57,24 @@ frm_context_def default_context() {
 
 const char* name_of(Kind kind) {
     switch (kind) {
-        case Kind::context: return "context";
-        case Kind::map: return "map";
-        case Kind::world: return "world";
-        case Kind::water: return "water";
-        case Kind::body: return "body";
-        case Kind::device: return "device";
-        case Kind::recorder: return "recorder";
-        case Kind::replay: return "replay";
-        case Kind::none: break;
+        case Kind::context:
+            return "context";
+        case Kind::map:
+            return "map";
+        case Kind::world:
+            return "world";
+        case Kind::water:
+            return "water";
+        case Kind::body:
+            return "body";
+        case Kind::device:
+            return "device";
+        case Kind::recorder:
+            return "recorder";
+        case Kind::replay:
+            return "replay";
+        case Kind::none:
+            break;
     }
     return "handle";
 }
@@ -80,13 +90,19 @@ void ContextMemory::do_deallocate(void* memory, std::size_t bytes, std::size_t a
 }
 
 Context::Context(const frm_context_def& def, std::uint8_t number, std::atomic<std::uint32_t>& generations)
-    : memory_(def.allocate ? def.allocate : default_allocate, def.release ? def.release : default_release, def.allocator_user),
-      axes_(def.axes), threads_(def.threads), number_(number), generations_(generations),
+    : memory_(def.allocate ? def.allocate : default_allocate, def.release ? def.release : default_release,
+              def.allocator_user),
+      axes_(def.axes),
+      threads_(def.threads),
+      number_(number),
+      generations_(generations),
       messages_(def.log_capacity, Message(), &memory_) {}
 
 Context::~Context() {
     // Who uses before what is used: a recorder closes its file, a device is stopped.
-    for (const Kind kind : {Kind::recorder, Kind::replay, Kind::device, Kind::body, Kind::water, Kind::world, Kind::map}) end(kind);
+    for (const Kind kind :
+         {Kind::recorder, Kind::replay, Kind::device, Kind::body, Kind::water, Kind::world, Kind::map})
+        end(kind);
     for (auto& chunk : chunks_) {
         Chunk* c = chunk.load();
         if (!c) continue;
@@ -192,7 +208,8 @@ void Context::poll_log(std::uint32_t* level, char* text, std::uint64_t capacity,
 Context* context_of(std::uint64_t handle) {
     const auto number = static_cast<std::uint32_t>(handle >> 24 & 0xFF);
     if (handle == 0 || number >= max_contexts) return nullptr;
-    if ((handle >> 32 & 0xFF) == static_cast<std::uint64_t>(Kind::context) && places[number].handle.load() != handle) return nullptr;
+    if ((handle >> 32 & 0xFF) == static_cast<std::uint64_t>(Kind::context) && places[number].handle.load() != handle)
+        return nullptr;
     return places[number].context.load();
 }
 
@@ -203,20 +220,34 @@ using namespace frm::api;
 
 const char* FRM_CALL frm_status_name(frm_status status) {
     switch (status) {
-        case FRM_OK: return "FRM_OK";
-        case FRM_ERROR_ARGUMENT: return "FRM_ERROR_ARGUMENT";
-        case FRM_ERROR_HANDLE: return "FRM_ERROR_HANDLE";
-        case FRM_ERROR_STATE: return "FRM_ERROR_STATE";
-        case FRM_ERROR_VERSION: return "FRM_ERROR_VERSION";
-        case FRM_ERROR_MEMORY: return "FRM_ERROR_MEMORY";
-        case FRM_ERROR_FILE: return "FRM_ERROR_FILE";
-        case FRM_ERROR_CORRUPT: return "FRM_ERROR_CORRUPT";
-        case FRM_ERROR_CAPACITY: return "FRM_ERROR_CAPACITY";
-        case FRM_ERROR_LIMIT: return "FRM_ERROR_LIMIT";
-        case FRM_ERROR_DEVICE: return "FRM_ERROR_DEVICE";
-        case FRM_ERROR_END: return "FRM_ERROR_END";
-        case FRM_ERROR_INTERNAL: return "FRM_ERROR_INTERNAL";
-        default: return "FRM_UNKNOWN";
+        case FRM_OK:
+            return "FRM_OK";
+        case FRM_ERROR_ARGUMENT:
+            return "FRM_ERROR_ARGUMENT";
+        case FRM_ERROR_HANDLE:
+            return "FRM_ERROR_HANDLE";
+        case FRM_ERROR_STATE:
+            return "FRM_ERROR_STATE";
+        case FRM_ERROR_VERSION:
+            return "FRM_ERROR_VERSION";
+        case FRM_ERROR_MEMORY:
+            return "FRM_ERROR_MEMORY";
+        case FRM_ERROR_FILE:
+            return "FRM_ERROR_FILE";
+        case FRM_ERROR_CORRUPT:
+            return "FRM_ERROR_CORRUPT";
+        case FRM_ERROR_CAPACITY:
+            return "FRM_ERROR_CAPACITY";
+        case FRM_ERROR_LIMIT:
+            return "FRM_ERROR_LIMIT";
+        case FRM_ERROR_DEVICE:
+            return "FRM_ERROR_DEVICE";
+        case FRM_ERROR_END:
+            return "FRM_ERROR_END";
+        case FRM_ERROR_INTERNAL:
+            return "FRM_ERROR_INTERNAL";
+        default:
+            return "FRM_UNKNOWN";
     }
 }
 
@@ -227,7 +258,9 @@ frm_status FRM_CALL frm_version(uint32_t* major, uint32_t* minor, uint32_t* patc
     return FRM_OK;
 }
 
-frm_status FRM_CALL frm_context_def_init(frm_context_def* def, uint64_t size) { return init_def(def, size, default_context()); }
+frm_status FRM_CALL frm_context_def_init(frm_context_def* def, uint64_t size) {
+    return init_def(def, size, default_context());
+}
 
 frm_status FRM_CALL frm_context_create(const frm_context_def* def, frm_context* context) {
     return guarded(nullptr, [&] {
@@ -243,7 +276,8 @@ frm_status FRM_CALL frm_context_create(const frm_context_def* def, frm_context* 
             Place& place = places[i];
             if (place.context.load()) continue;
             place.context.store(new Context(d, static_cast<std::uint8_t>(i), place.generations));
-            place.handle.store(make_handle(next_generation(place.generations), Kind::context, static_cast<std::uint8_t>(i), 0));
+            place.handle.store(
+                make_handle(next_generation(place.generations), Kind::context, static_cast<std::uint8_t>(i), 0));
             *context = place.handle.load();
             return;
         }
@@ -271,6 +305,7 @@ frm_status FRM_CALL frm_context_last_error(frm_context context, char* text, uint
     });
 }
 
-frm_status FRM_CALL frm_context_poll_log(frm_context context, uint32_t* level, char* text, uint64_t capacity, uint64_t* size) {
+frm_status FRM_CALL frm_context_poll_log(frm_context context, uint32_t* level, char* text, uint64_t capacity,
+                                         uint64_t* size) {
     return with_context(context, [&](Context& c) { c.poll_log(level, text, capacity, size); });
 }

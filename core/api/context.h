@@ -30,7 +30,8 @@ public:
 /// The caller's allocator, as the standard library's containers want it.
 class ContextMemory : public std::pmr::memory_resource {
 public:
-    ContextMemory(frm_allocate_fn take, frm_free_fn give_back, void* user) : allocate_(take), release_(give_back), user_(user) {}
+    ContextMemory(frm_allocate_fn take, frm_free_fn give_back, void* user)
+        : allocate_(take), release_(give_back), user_(user) {}
 
 private:
     void* do_allocate(std::size_t bytes, std::size_t alignment) override;
@@ -70,7 +71,8 @@ public:
 
     template <typename T, typename... Arguments>
     std::shared_ptr<T> make(Arguments&&... arguments) {
-        return std::allocate_shared<T>(std::pmr::polymorphic_allocator<T>(&memory_), std::forward<Arguments>(arguments)...);
+        return std::allocate_shared<T>(std::pmr::polymorphic_allocator<T>(&memory_),
+                                       std::forward<Arguments>(arguments)...);
     }
 
     void fail(const char* text);
@@ -101,7 +103,8 @@ private:
     std::uint32_t threads_;
     std::uint8_t number_;
     std::atomic<std::uint32_t>& generations_;
-    std::array<std::atomic<Chunk*>, max_chunks> chunks_{};  ///< never move, so that other threads may look while one adds
+    std::array<std::atomic<Chunk*>, max_chunks>
+        chunks_{};  ///< never move, so that other threads may look while one adds
     std::uint32_t slots_ = 0;
     std::mutex error_lock_;
     char error_[400] = {};
@@ -112,7 +115,8 @@ private:
 /// The context of a handle of any kind, or null. [any]
 Context* context_of(std::uint64_t handle);
 
-/// Runs one function of the interface: floating-point modes set, every exception turned into a status and the last-error text.
+/// Runs one function of the interface: floating-point modes set, every exception turned into a status and the
+/// last-error text.
 template <typename Function>
 frm_status guarded(Context* context, Function&& function) noexcept {
     const FloatingPointGuard modes;

@@ -1,5 +1,5 @@
-// The caller's floating-point modes are saved at every entry and given back: a host that flushes denormals or rounds down
-// (any DSO linked with -ffast-math does) would otherwise change our bits, and we its.
+// The caller's floating-point modes are saved at every entry and given back: a host that flushes denormals or rounds
+// down (any DSO linked with -ffast-math does) would otherwise change our bits, and we its.
 #pragma once
 
 #include <cstdint>

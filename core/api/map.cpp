@@ -38,8 +38,8 @@ frm_map open(Context& context, const std::uint8_t* data, std::size_t size) {
     auto map = read_map(context, data, size);
     const frm_map handle = context.add(Kind::map, context.make<MapObject>(map));
     if (map->facts.reynolds_solved < 0.999f * map->facts.reynolds)
-        context.log(FRM_LOG_INFO, "map: baked at Reynolds number %g, solved at %g", static_cast<double>(map->facts.reynolds),
-                    static_cast<double>(map->facts.reynolds_solved));
+        context.log(FRM_LOG_INFO, "map: baked at Reynolds number %g, solved at %g",
+                    static_cast<double>(map->facts.reynolds), static_cast<double>(map->facts.reynolds_solved));
     return handle;
 }
 

@@ -14,7 +14,8 @@ struct MapObject : Object {
 };
 
 struct WorldObject : Object {
-    WorldObject(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resource* memory) : world(def, threads, memory) {}
+    WorldObject(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resource* memory)
+        : world(def, threads, memory) {}
     World world;
     std::uint64_t handle = 0;
     std::uint32_t users = 0;  ///< recorders and replays

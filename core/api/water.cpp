@@ -22,17 +22,22 @@ frm_water_def default_water() {
 WaterDef checked(const frm_water_def& d) {
     require_range(d.nx, 8, 8192, "def.nx");
     require_range(d.ny, 8, 8192, "def.ny");
-    if (d.border > FRM_BORDER_REFLECTING) throw Error(FRM_ERROR_ARGUMENT, "def.border = %u is not an frm_border", d.border);
+    if (d.border > FRM_BORDER_REFLECTING)
+        throw Error(FRM_ERROR_ARGUMENT, "def.border = %u is not an frm_border", d.border);
     require_range(d.border_cells, 0, 64, "def.border_cells");
     if (d.border == FRM_BORDER_ABSORBING && (3 * d.border_cells >= d.nx || 3 * d.border_cells >= d.ny))
-        throw Error(FRM_ERROR_ARGUMENT, "def.border_cells = %u is a third of nx = %u or ny = %u, or more", d.border_cells, d.nx, d.ny);
+        throw Error(FRM_ERROR_ARGUMENT, "def.border_cells = %u is a third of nx = %u or ny = %u, or more",
+                    d.border_cells, d.nx, d.ny);
     require_range(static_cast<double>(d.cell), 1e-4f, 1e3, "def.cell");
     require_range(static_cast<double>(d.depth), 1e-3f, 1e4, "def.depth");
     require_range(static_cast<double>(d.snapshot_interval), 0, 10, "def.snapshot_interval");
     require_range(d.centre_x, -1e9, 1e9, "def.centre_x");
     require_range(d.centre_y, -1e9, 1e9, "def.centre_y");
     WaterDef def;
-    def.field = {static_cast<std::int32_t>(d.nx), static_cast<std::int32_t>(d.ny), d.cell, d.depth,
+    def.field = {static_cast<std::int32_t>(d.nx),
+                 static_cast<std::int32_t>(d.ny),
+                 d.cell,
+                 d.depth,
                  d.border == FRM_BORDER_ABSORBING ? Border::absorbing : Border::reflecting,
                  static_cast<std::int32_t>(d.border_cells)};
     def.centre_x = d.centre_x;
@@ -71,7 +76,9 @@ frm_water_state checked(const frm_water_state* state, const Water& water) {
 using namespace frm;
 using namespace frm::api;
 
-frm_status FRM_CALL frm_water_def_init(frm_water_def* def, uint64_t size) { return init_def(def, size, default_water()); }
+frm_status FRM_CALL frm_water_def_init(frm_water_def* def, uint64_t size) {
+    return init_def(def, size, default_water());
+}
 
 frm_status FRM_CALL frm_water_create(frm_world world, const frm_water_def* def, frm_water* water) {
     return with<WorldObject>(world, [&](Context& c, WorldObject& object) {
@@ -150,8 +157,8 @@ frm_status FRM_CALL frm_water_set_height(frm_water water, const float* height, u
         const float depth = object.water().field.def().depth;
         for (std::uint64_t i = 0; i < count; ++i)
             if (!(std::fabs(height[i]) <= depth))
-                throw Error(FRM_ERROR_ARGUMENT, "height[%llu] is not within the depth of %g m", static_cast<unsigned long long>(i),
-                            static_cast<double>(depth));
+                throw Error(FRM_ERROR_ARGUMENT, "height[%llu] is not within the depth of %g m",
+                            static_cast<unsigned long long>(i), static_cast<double>(depth));
         object.world.world.set_height(height);
     });
 }
@@ -163,7 +170,8 @@ frm_status FRM_CALL frm_water_set_pressure(frm_water water, const float* pressur
             require_count(object.water(), count);
             for (std::uint64_t i = 0; i < count; ++i)
                 if (!(std::fabs(pressure[i]) <= 1e9f))
-                    throw Error(FRM_ERROR_ARGUMENT, "pressure[%llu] is not finite or beyond 1e9 Pa", static_cast<unsigned long long>(i));
+                    throw Error(FRM_ERROR_ARGUMENT, "pressure[%llu] is not finite or beyond 1e9 Pa",
+                                static_cast<unsigned long long>(i));
         } else if (count != 0) {
             throw Error(FRM_ERROR_ARGUMENT, "pressure is null and count is not 0");
         }

@@ -24,7 +24,8 @@ frm_world_def default_world() {
 
 WorldDef checked(const frm_world_def& d) {
     if (d.model > FRM_MODEL_DEFAULT) throw Error(FRM_ERROR_ARGUMENT, "def.model = %u is not an frm_model", d.model);
-    if (d.surface > FRM_SURFACE_NONE) throw Error(FRM_ERROR_ARGUMENT, "def.surface = %u is not an frm_surface", d.surface);
+    if (d.surface > FRM_SURFACE_NONE)
+        throw Error(FRM_ERROR_ARGUMENT, "def.surface = %u is not an frm_surface", d.surface);
     require_range(static_cast<double>(d.gravity), 0, 1000, "def.gravity");
     require_range(static_cast<double>(d.density), 1e-3f, 1e5, "def.density");
     require_range(static_cast<double>(d.viscosity), 1e-9f, 1e2, "def.viscosity");
@@ -38,7 +39,9 @@ WorldDef checked(const frm_world_def& d) {
 using namespace frm;
 using namespace frm::api;
 
-frm_status FRM_CALL frm_world_def_init(frm_world_def* def, uint64_t size) { return init_def(def, size, default_world()); }
+frm_status FRM_CALL frm_world_def_init(frm_world_def* def, uint64_t size) {
+    return init_def(def, size, default_world());
+}
 
 frm_status FRM_CALL frm_world_create(frm_context context, const frm_world_def* def, frm_world* world) {
     return with_context(context, [&](Context& c) {
@@ -65,7 +68,8 @@ frm_status FRM_CALL frm_world_get_def(frm_world world, frm_world_def* def) {
 
 frm_status FRM_CALL frm_world_destroy(frm_world world) {
     return with<WorldObject>(world, [&](Context& c, WorldObject& object) {
-        if (object.users > 0 || object.replayed) throw Error(FRM_ERROR_STATE, "a recorder or a replay still uses this world");
+        if (object.users > 0 || object.replayed)
+            throw Error(FRM_ERROR_STATE, "a recorder or a replay still uses this world");
         c.remove(world);
     });
 }

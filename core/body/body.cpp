@@ -3,8 +3,12 @@
 namespace frm {
 
 Body::Body(const BodyDef& d, std::uint32_t number, std::pmr::memory_resource* memory)
-    : def(d), id(number), rotation(d.pose.rotation), local(d.map->vertices.size(), Vec3f(), memory),
-      depth(d.map->vertices.size(), 0.0f, memory), sources(d.map->sources.size(), SourceState(), memory) {}
+    : def(d),
+      id(number),
+      rotation(d.pose.rotation),
+      local(d.map->vertices.size(), Vec3f(), memory),
+      depth(d.map->vertices.size(), 0.0f, memory),
+      sources(d.map->sources.size(), SourceState(), memory) {}
 
 Vec3f Body::centre() const { return (def.map->shape.low + def.map->shape.high) * (0.5f * def.scale); }
 

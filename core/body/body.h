@@ -51,11 +51,11 @@ struct Fluid {
 
 /// What is remembered of one haptic source between ticks, and of the last one for those who look.
 struct SourceState {
-    float map_time = 0;   ///< s of Eq. 6
-    float wet_area = 0;   ///< m^2
-    float wet_ratio = 0;  ///< alpha of Eq. 6
-    Vec3f position;           ///< local: world axes, origin at the body
-    Vec3f relative_velocity;  ///< of the water against the source, world axes
+    float map_time = 0;        ///< s of Eq. 6
+    float wet_area = 0;        ///< m^2
+    float wet_ratio = 0;       ///< alpha of Eq. 6
+    Vec3f position;            ///< local: world axes, origin at the body
+    Vec3f relative_velocity;   ///< of the water against the source, world axes
     Vec3f pressure, friction;  ///< N, world axes
 };
 
@@ -65,8 +65,8 @@ struct Body {
     BodyDef def;
     std::uint32_t id;  ///< counts the bodies of a world in the order of creation
     Rotation<float> rotation;
-    std::pmr::vector<Vec3f> local;    ///< vertices, scaled and turned: world axes, origin at the body
-    std::pmr::vector<float> depth;    ///< of each vertex
+    std::pmr::vector<Vec3f> local;  ///< vertices, scaled and turned: world axes, origin at the body
+    std::pmr::vector<float> depth;  ///< of each vertex
     std::pmr::vector<SourceState> sources;
     std::optional<Footprint> footprint;  ///< while the world has water
 
@@ -80,18 +80,19 @@ struct Body {
     float radius() const;
 };
 
-/// What of the surface is wet (section 6.2) and the hydrostatic force on it (Eqs. 1, 4 and 5), by an exact clip of every triangle
-/// against the surface, taken as flat within the triangle.
+/// What of the surface is wet (section 6.2) and the hydrostatic force on it (Eqs. 1, 4 and 5), by an exact clip of
+/// every triangle against the surface, taken as flat within the triangle.
 void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid);
 
-/// Lays the volume that the body displaces under the calm surface, `level` above its origin, into its footprint; with `spread`, the
-/// wider the deeper. After measure_wet_surface, which turns the surface.
+/// Lays the volume that the body displaces under the calm surface, `level` above its origin, into its footprint; with
+/// `spread`, the wider the deeper. After measure_wet_surface, which turns the surface.
 void lay_displacement(Body& body, float level, bool spread);
 
-/// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). With `own_waves` the
-/// water's velocity is taken without what the body itself made.
-/// With `spread` the pressure reaches the surface the wider the deeper its source is.
-void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, bool own_waves, bool spread);
+/// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). With
+/// `own_waves` the water's velocity is taken without what the body itself made. With `spread` the pressure reaches the
+/// surface the wider the deeper its source is.
+void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, bool own_waves,
+                        bool spread);
 
 /// Weight, and the sum of the parts (Eq. 4).
 void sum_forces(Body& body, const Fluid& fluid);

@@ -10,8 +10,8 @@ struct Corner {
     float depth;  ///< below the surface, m
 };
 
-/// Calls add(corner, corner, corner, share) for each wholly wet piece, `share` being its part of the triangle's area: nothing, the
-/// triangle itself, or one or two pieces of it. Returns the number of wet corners.
+/// Calls add(corner, corner, corner, share) for each wholly wet piece, `share` being its part of the triangle's area:
+/// nothing, the triangle itself, or one or two pieces of it. Returns the number of wet corners.
 template <typename Add>
 int add_wet_part(const Corner corner[3], Add&& add) {
     const bool wet[3] = {corner[0].depth > 0, corner[1].depth > 0, corner[2].depth > 0};
@@ -20,8 +20,10 @@ int add_wet_part(const Corner corner[3], Add&& add) {
     if (count == 0 || count == 3) return count;
 
     int odd = 0;  // the corner that is alone on its side of the surface
-    if (wet[0] == wet[1]) odd = 2;
-    else if (wet[0] == wet[2]) odd = 1;
+    if (wet[0] == wet[1])
+        odd = 2;
+    else if (wet[0] == wet[2])
+        odd = 1;
     const Corner &p = corner[odd], &q = corner[(odd + 1) % 3], &r = corner[(odd + 2) % 3];
     const float s = p.depth / (p.depth - q.depth), t = p.depth / (p.depth - r.depth);
     const Corner on_q{p.at + (q.at - p.at) * s, 0}, on_r{p.at + (r.at - p.at) * t, 0};

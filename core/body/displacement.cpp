@@ -3,9 +3,10 @@
 
 namespace frm {
 
-// The clip is against the calm surface, not the waves: the linear theory of Eqs. 7 and 8 takes what pushes the water at its mean
-// place. Against the waves, a column that the body pierces would be thicker where the water is higher and so raise the water
-// again: beside a box at rest in 0.4 m of water a ripple of 1 mm then grew to 0.35 m in two seconds.
+// The clip is against the calm surface, not the waves: the linear theory of Eqs. 7 and 8 takes what pushes the water
+// at its mean place. Against the waves, a column that the body pierces would be thicker where the water is higher and
+// so raise the water again: beside a box at rest in 0.4 m of water a ripple of 1 mm then grew to 0.35 m in two
+// seconds.
 void lay_displacement(Body& body, float level, bool spread) {
     const Map& map = *body.def.map;
     Footprint& footprint = *body.footprint;

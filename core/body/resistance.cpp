@@ -6,14 +6,15 @@
 namespace frm {
 namespace {
 
-/// The similarity laws that carry a map to another size and fluid: pressure with density and length^2, friction with dynamic
-/// viscosity and length, map time with speed over length.
+/// The similarity laws that carry a map to another size and fluid: pressure with density and length^2, friction with
+/// dynamic viscosity and length, map time with speed over length.
 struct Similarity {
     float pressure, friction, time;
 
     Similarity(const Map& map, float scale, const Fluid& fluid)
         : pressure(fluid.density / map.facts.density * scale * scale),
-          friction(fluid.density * fluid.viscosity / (map.facts.density * map.facts.viscosity) * scale), time(1 / scale) {}
+          friction(fluid.density * fluid.viscosity / (map.facts.density * map.facts.viscosity) * scale),
+          time(1 / scale) {}
 };
 
 /// s_k = (u / u0) dt + s_{k-1}, within one period.
@@ -66,7 +67,8 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
         const Vec3f direction = body.rotation.to_body(source.relative_velocity) * (1 / speed);
         const SourceForce force =
             look_up(map, l, map.directions.interpolate(direction), sample_position(map, source.map_time));
-        source.pressure = body.rotation.to_world(force.pressure) * (source.wet_ratio * ratio * ratio * similar.pressure);
+        source.pressure =
+            body.rotation.to_world(force.pressure) * (source.wet_ratio * ratio * ratio * similar.pressure);
         source.friction = body.rotation.to_world(force.friction) * (source.wet_ratio * ratio * similar.friction);
         pressure.force += source.pressure;
         pressure.torque += cross(source.position, source.pressure);

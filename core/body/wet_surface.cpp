@@ -7,7 +7,8 @@
 namespace frm {
 namespace {
 
-/// Sums over the wet surface, in double so that thousands of small triangles do not lose the last digits of a large force.
+/// Sums over the wet surface, in double so that thousands of small triangles do not lose the last digits of a large
+/// force.
 class WetSum {
 public:
     explicit WetSum(bool buoyant) : buoyant_(buoyant) {}
@@ -25,7 +26,8 @@ public:
         const Vec3f vector_area = vector_area_ * share;
         const float depths = a.depth + b.depth + c.depth;
         force += Vec3d(vector_area * (depths * (1.0f / 3)));
-        const Vec3f arm = ((a.at + b.at + c.at) * depths + (a.at * a.depth + b.at * b.depth + c.at * c.depth)) * (1.0f / 12);
+        const Vec3f arm =
+            ((a.at + b.at + c.at) * depths + (a.at * a.depth + b.at * b.depth + c.at * c.depth)) * (1.0f / 12);
         torque += Vec3d(cross(arm, vector_area));
     }
 

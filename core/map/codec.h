@@ -15,7 +15,8 @@ constexpr std::uint32_t map_format_version = 1;
 /// The file's bytes. The map must be complete.
 std::vector<std::uint8_t> encode_map(const Map& map);
 
-/// Fills an empty map (its `file` and `content_hash` too). Throws Error: FRM_ERROR_CORRUPT or FRM_ERROR_VERSION, naming the chunk.
+/// Fills an empty map (its `file` and `content_hash` too). Throws Error: FRM_ERROR_CORRUPT or FRM_ERROR_VERSION,
+/// naming the chunk.
 void decode_map(const std::uint8_t* data, std::size_t size, Map& map);
 
 namespace format {

@@ -45,8 +45,10 @@ private:
             throw Error(FRM_ERROR_CORRUPT, "map: this is not a .frm file (its first bytes are not the format's)");
         const std::uint32_t version = reader_.u32();
         if (version != map_format_version)
-            throw Error(FRM_ERROR_VERSION, "map: format version %u; this library reads version %u", version, map_format_version);
-        if (reader_.u32() != 0) throw Error(FRM_ERROR_VERSION, "map: the header has flags that this library does not know");
+            throw Error(FRM_ERROR_VERSION, "map: format version %u; this library reads version %u", version,
+                        map_format_version);
+        if (reader_.u32() != 0)
+            throw Error(FRM_ERROR_VERSION, "map: the header has flags that this library does not know");
         map_.content_hash = reader_.u64();
         if (reader_.u64() != file_size) throw Error(FRM_ERROR_CORRUPT, "map: the file is cut off or has grown");
         const std::uint32_t chunks = reader_.u32();
@@ -65,19 +67,26 @@ private:
         c.index = reader_.u32();
         c.raw_size = reader_.u64();
         const std::uint64_t stored = reader_.u64();
-        reader_.u64();
+        if (reader_.u64() != 0) corrupt(c, "its reserved field is not 0");
         if (stored > reader_.left()) corrupt(c, "is longer than the file");
         c.stored_size = static_cast<std::size_t>(stored);
         c.stored = reader_.take(c.stored_size);
 
         const auto is = [&](const char* type) { return std::memcmp(c.type, type, 4) == 0; };
-        if (is("FACT")) once(c, facts_), facts(c);
-        else if (is("GEOM")) once(c, geometry_), geometry(c);
-        else if (is("REGN")) once(c, regions_), regions(c);
-        else if (is("DIRS")) once(c, directions_), directions(c);
-        else if (is("MEAN")) once(c, means_), means(c);
-        else if (is("FLUC")) fluctuation(c);
-        else if (is("PROV")) once(c, provenance_), provenance(c);
+        if (is("FACT"))
+            once(c, facts_), facts(c);
+        else if (is("GEOM"))
+            once(c, geometry_), geometry(c);
+        else if (is("REGN"))
+            once(c, regions_), regions(c);
+        else if (is("DIRS"))
+            once(c, directions_), directions(c);
+        else if (is("MEAN"))
+            once(c, means_), means(c);
+        else if (is("FLUC"))
+            fluctuation(c);
+        else if (is("PROV"))
+            once(c, provenance_), provenance(c);
         // Any other type comes from a later version that older readers may ignore.
     }
 
@@ -86,11 +95,13 @@ private:
         seen = true;
     }
 
-    /// Decompresses into raw_. `expected` is the size that the counts read so far ask for, so that no chunk can claim more.
+    /// Decompresses into raw_. `expected` is the size that the counts read so far ask for, so that no chunk can claim
+    /// more.
     ByteReader open(const Chunk& c, std::uint64_t expected) {
         if (c.raw_size != expected) corrupt(c, "its size does not match its contents");
         if (c.raw_size > max_raw_size) corrupt(c, "is too large");
-        if (ZSTD_getFrameContentSize(c.stored, c.stored_size) != c.raw_size) corrupt(c, "its compressed frame has another size");
+        if (ZSTD_getFrameContentSize(c.stored, c.stored_size) != c.raw_size)
+            corrupt(c, "its compressed frame has another size");
         raw_.resize(static_cast<std::size_t>(c.raw_size));
         const std::size_t size = ZSTD_decompress(raw_.data(), raw_.size(), c.stored, c.stored_size);
         if (ZSTD_isError(size)) corrupt(c, ZSTD_getErrorName(size));
@@ -105,8 +116,8 @@ private:
     void facts(const Chunk& c) {
         ByteReader r = open(c, 9 * 4);
         MapFacts& f = map_.facts;
-        for (float* v : {&f.base_speed, &f.period, &f.density, &f.viscosity, &f.reference_length, &f.reynolds, &f.reynolds_solved,
-                         &f.quantisation_error})
+        for (float* v : {&f.base_speed, &f.period, &f.density, &f.viscosity, &f.reference_length, &f.reynolds,
+                         &f.reynolds_solved, &f.quantisation_error})
             *v = r.f32();
         map_.samples = r.u32();
         if (map_.samples == 0 || map_.samples > Map::max_samples) corrupt(c, "the number of samples is out of range");
@@ -177,7 +188,8 @@ private:
         if (seen_[c.index]) corrupt(c, "comes twice");
         const std::size_t sources = map_.sources.size(), samples = map_.samples, width = Map::components;
         const std::size_t count = sources * samples * width;
-        if (std::uint64_t{count} * map_.directions.count() > max_values) corrupt(c, "is one of a set that is too large");
+        if (std::uint64_t{count} * map_.directions.count() > max_values)
+            corrupt(c, "is one of a set that is too large");
         ByteReader r = open(c, 4 + 2 * std::uint64_t{count});
         if (map_.fluctuation.empty()) map_.fluctuation.resize(map_.directions.count() * count);
         map_.step[c.index] = r.f32();

@@ -38,8 +38,8 @@ Bytes facts_chunk(const Map& map) {
     Bytes raw;
     ByteWriter<Bytes> w(raw);
     const MapFacts& f = map.facts;
-    for (const float v : {f.base_speed, f.period, f.density, f.viscosity, f.reference_length, f.reynolds, f.reynolds_solved,
-                          f.quantisation_error})
+    for (const float v : {f.base_speed, f.period, f.density, f.viscosity, f.reference_length, f.reynolds,
+                          f.reynolds_solved, f.quantisation_error})
         w.f32(v);
     w.u32(map.samples);
     return raw;
@@ -88,8 +88,8 @@ Bytes means_chunk(const Map& map) {
     return raw;
 }
 
-// Differences in time, folded so that small ones of either sign are small numbers, low bytes before high bytes: what is smooth
-// in time becomes runs of zeros for zstd.
+// Differences in time, folded so that small ones of either sign are small numbers, low bytes before high bytes: what
+// is smooth in time becomes runs of zeros for zstd.
 Bytes fluctuation_chunk(const Map& map, std::uint32_t direction) {
     Bytes raw;
     ByteWriter<Bytes> w(raw);

@@ -5,8 +5,8 @@
 
 namespace frm {
 
-// Points before row i: rows of |i'| = a hold 4 (n - a) points, 1 for a = n. Within a row, columns j hold two points (k < 0 first),
-// one at both ends.
+// Points before row i: rows of |i'| = a hold 4 (n - a) points, 1 for a = n. Within a row, columns j hold two points (k
+// < 0 first), one at both ends.
 std::uint32_t DirectionSet::index_of(std::int32_t i, std::int32_t j, std::int32_t k) const {
     const std::int32_t m = n_ - std::abs(i);
     std::int32_t before = 0;

@@ -1,5 +1,6 @@
-// Where a direction is interpolated. Directions of the uniform stream sit on a subdivided octahedron: the points (i, j, k) / |.| for
-// all integers with |i| + |j| + |k| = n, of which there are 4 n^2 + 2. Three of them and their weights are found without a search.
+// Where a direction is interpolated. Directions of the uniform stream sit on a subdivided octahedron: the points (i,
+// j, k) / |.| for all integers with |i| + |j| + |k| = n, of which there are 4 n^2 + 2. Three of them and their weights
+// are found without a search.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@ public:
     std::uint32_t count() const { return static_cast<std::uint32_t>(4 * n_ * n_ + 2); }
     /// Unit vector of a direction.
     Vec3d direction(std::uint32_t index) const;
-    /// Barycentric weights in the octahedron's face, exact at the directions, continuous everywhere. `d` must not be zero;
-    /// its length does not matter.
+    /// Barycentric weights in the octahedron's face, exact at the directions, continuous everywhere. `d` must not be
+    /// zero; its length does not matter.
     DirectionWeights interpolate(const Vec3f& d) const;
 
 private:

@@ -8,8 +8,17 @@
 namespace frm {
 
 Map::Map(std::pmr::memory_resource* memory)
-    : vertices(memory), triangles(memory), region_begin(memory), sources(memory), mean(memory), step(memory),
-      fluctuation(memory), provenance(memory), triangle_area(memory), region_area(memory), file(memory) {}
+    : vertices(memory),
+      triangles(memory),
+      region_begin(memory),
+      sources(memory),
+      mean(memory),
+      step(memory),
+      fluctuation(memory),
+      provenance(memory),
+      triangle_area(memory),
+      region_area(memory),
+      file(memory) {}
 
 namespace {
 
@@ -58,18 +67,21 @@ void Map::complete() {
         for (const std::uint32_t i : t) require(i < vertices.size(), "a triangle names a vertex that is not there");
 
     require(!sources.empty() && sources.size() <= max_sources, "the number of sources is out of range");
-    require(region_begin.size() == sources.size() + 1 && region_begin.front() == 0 && region_begin.back() == triangles.size(),
+    require(region_begin.size() == sources.size() + 1 && region_begin.front() == 0 &&
+                region_begin.back() == triangles.size(),
             "the regions do not cover the triangles");
     for (std::size_t l = 0; l < sources.size(); ++l) {
         require(region_begin[l] < region_begin[l + 1], "a region has no triangle");
-        require(finite(sources[l].position) && finite(sources[l].normal) && positive(sources[l].area), "a source is not finite");
+        require(finite(sources[l].position) && finite(sources[l].normal) && positive(sources[l].area),
+                "a source is not finite");
     }
 
     const std::size_t cells = std::size_t{directions.count()} * sources.size();
     require(samples >= 1 && samples <= max_samples, "the number of samples is out of range");
     require(mean.size() == cells, "the means do not match directions and sources");
     require(step.size() == directions.count(), "the fluctuations do not match the directions");
-    require(fluctuation.size() == cells * samples * components, "the fluctuations do not match directions, sources and samples");
+    require(fluctuation.size() == cells * samples * components,
+            "the fluctuations do not match directions, sources and samples");
     for (const SourceForce& f : mean) require(finite(f.pressure) && finite(f.friction), "a mean force is not finite");
     for (const float s : step) require(std::isfinite(s) && s >= 0, "a fluctuation's step is not a number");
 

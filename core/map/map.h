@@ -1,5 +1,5 @@
-// The Fluid Resistance Map in memory: the object's sample triangles, its haptic sources, and what a uniform stream of the base
-// speed does to each source, from every direction of the set, over one period (R_p and R_f of Eq. 6).
+// The Fluid Resistance Map in memory: the object's sample triangles, its haptic sources, and what a uniform stream of
+// the base speed does to each source, from every direction of the set, over one period (R_p and R_f of Eq. 6).
 #pragma once
 
 #include <array>
@@ -60,10 +60,10 @@ struct Map {
     std::pmr::vector<Source> sources;
     DirectionSet directions;
     std::uint32_t samples = 0;
-    std::pmr::vector<SourceForce> mean;         ///< [direction][source]
-    std::pmr::vector<float> step;               ///< [direction], N: one unit of `fluctuation`
+    std::pmr::vector<SourceForce> mean;          ///< [direction][source]
+    std::pmr::vector<float> step;                ///< [direction], N: one unit of `fluctuation`
     std::pmr::vector<std::int16_t> fluctuation;  ///< [direction][source][sample][component]
-    std::pmr::string provenance;                ///< JSON text
+    std::pmr::string provenance;                 ///< JSON text
 
     // Filled by complete().
     MapShape shape;
@@ -75,7 +75,8 @@ struct Map {
 
     std::uint32_t source_count() const { return static_cast<std::uint32_t>(sources.size()); }
 
-    /// Checks that everything fits together and is finite, and fills what follows from it. Throws Error (FRM_ERROR_CORRUPT) naming what does not.
+    /// Checks that everything fits together and is finite, and fills what follows from it. Throws Error
+    /// (FRM_ERROR_CORRUPT) naming what does not.
     void complete();
 };
 

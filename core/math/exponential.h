@@ -14,7 +14,8 @@ inline float exponential(float x) {
     const float n = static_cast<float>(static_cast<std::int32_t>(x * 1.44269504f - 0.5f));
     const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f;
     // Taylor to the sixth power: the remainder is below r^7 / 7! = 1.2e-7 at the end of the interval.
-    const float p = 1.0f + r * (1.0f + r * (0.5f + r * (1.0f / 6 + r * (1.0f / 24 + r * (1.0f / 120 + r * (1.0f / 720))))));
+    const float p =
+        1.0f + r * (1.0f + r * (0.5f + r * (1.0f / 6 + r * (1.0f / 24 + r * (1.0f / 120 + r * (1.0f / 720))))));
     const std::uint32_t bits = static_cast<std::uint32_t>(static_cast<std::int32_t>(n) + 127) << 23;
     float power;
     std::memcpy(&power, &bits, sizeof power);

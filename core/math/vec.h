@@ -12,7 +12,8 @@ struct Vec3 {
     constexpr Vec3() = default;
     constexpr Vec3(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
     template <typename U>
-    constexpr explicit Vec3(const Vec3<U>& o) : x(static_cast<T>(o.x)), y(static_cast<T>(o.y)), z(static_cast<T>(o.z)) {}
+    constexpr explicit Vec3(const Vec3<U>& o)
+        : x(static_cast<T>(o.x)), y(static_cast<T>(o.y)), z(static_cast<T>(o.z)) {}
 
     constexpr T& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
     constexpr const T& operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
@@ -28,7 +29,9 @@ template <typename T> constexpr Vec3<T> operator-(const Vec3<T>& a) { return {-a
 template <typename T> constexpr Vec3<T> operator*(Vec3<T> a, T s) { return a *= s; }
 template <typename T> constexpr Vec3<T> operator*(T s, Vec3<T> a) { return a *= s; }
 template <typename T> constexpr Vec3<T> operator/(const Vec3<T>& a, T s) { return {a.x / s, a.y / s, a.z / s}; }
-template <typename T> constexpr bool operator==(const Vec3<T>& a, const Vec3<T>& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+template <typename T> constexpr bool operator==(const Vec3<T>& a, const Vec3<T>& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
 
 template <typename T> constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 template <typename T> constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {

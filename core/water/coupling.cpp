@@ -7,7 +7,9 @@ namespace {
 
 /// The part of a window's rectangle that lies in the water, in the window's cells.
 Rect inside_water(const Footprint& footprint, const Field& water, const Rect& r) {
-    return r.moved(footprint.i0(), footprint.j0()).clipped(water.def().nx, water.def().ny).moved(-footprint.i0(), -footprint.j0());
+    return r.moved(footprint.i0(), footprint.j0())
+        .clipped(water.def().nx, water.def().ny)
+        .moved(-footprint.i0(), -footprint.j0());
 }
 
 std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
@@ -25,11 +27,13 @@ void displace_water(Footprint& footprint, Field& water) {
     const float* now = footprint.thickness();
     const float* before = footprint.thickness_before();
     for (std::int32_t j = changed.j0; j < changed.j1; ++j)
-        for (std::int32_t i = changed.i0; i < changed.i1; ++i) footprint.own.height()[at(i, j, n)] += now[at(i, j, n)] - before[at(i, j, n)];
+        for (std::int32_t i = changed.i0; i < changed.i1; ++i)
+            footprint.own.height()[at(i, j, n)] += now[at(i, j, n)] - before[at(i, j, n)];
     const Rect r = inside_water(footprint, water, changed);
     for (std::int32_t j = r.j0; j < r.j1; ++j)
         for (std::int32_t i = r.i0; i < r.i1; ++i)
-            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] += now[at(i, j, n)] - before[at(i, j, n)];
+            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] +=
+                now[at(i, j, n)] - before[at(i, j, n)];
 }
 
 void withdraw_body(Footprint& footprint, Field& water) {
@@ -37,7 +41,8 @@ void withdraw_body(Footprint& footprint, Field& water) {
     const Rect r = inside_water(footprint, water, footprint.wet_before());
     for (std::int32_t j = r.j0; j < r.j1; ++j)
         for (std::int32_t i = r.i0; i < r.i1; ++i)
-            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] -= footprint.thickness_before()[at(i, j, n)];
+            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] -=
+                footprint.thickness_before()[at(i, j, n)];
 }
 
 void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, const Vec3f& angular, float z) {
@@ -54,7 +59,9 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
     };
     const GridOrigin body = footprint.body_in_window();
     const float cell = water.def().cell;
-    const auto local = [&](float i, std::int32_t base, float fraction) { return (i - static_cast<float>(base) - fraction) * cell; };
+    const auto local = [&](float i, std::int32_t base, float fraction) {
+        return (i - static_cast<float>(base) - fraction) * cell;
+    };
 
     const Rect r = inside_water(footprint, water, {wet.i0, wet.j0, wet.i1 + 1, wet.j1 + 1});
     const std::int32_t nx = water.def().nx;
@@ -91,8 +98,10 @@ void push_water(Footprint& footprint, Field& water, float factor) {
     for (std::int32_t j = r.j0; j < r.j1; ++j) {
         for (std::int32_t i = r.i0; i < r.i1; ++i) {
             const std::int32_t wi = i + footprint.i0(), wj = j + footprint.j0();
-            if (wi > 0 && i > 0) water.velocity_x()[at(wi, wj, nx + 1)] += f * (pressure[at(i, j, n)] - pressure[at(i - 1, j, n)]);
-            if (wj > 0 && j > 0) water.velocity_y()[at(wi, wj, nx)] += f * (pressure[at(i, j, n)] - pressure[at(i, j - 1, n)]);
+            if (wi > 0 && i > 0)
+                water.velocity_x()[at(wi, wj, nx + 1)] += f * (pressure[at(i, j, n)] - pressure[at(i - 1, j, n)]);
+            if (wj > 0 && j > 0)
+                water.velocity_y()[at(wi, wj, nx)] += f * (pressure[at(i, j, n)] - pressure[at(i, j - 1, n)]);
         }
     }
 }

@@ -1,5 +1,5 @@
-// How a body pushes the water (section 6.3), and how the water gets to know it: all of it goes into the water and, in the same
-// way, into the body's own waves.
+// How a body pushes the water (section 6.3), and how the water gets to know it: all of it goes into the water and, in
+// the same way, into the body's own waves.
 #pragma once
 
 #include "core/math/vec.h"
@@ -7,12 +7,12 @@
 
 namespace frm {
 
-/// The water rises where the body takes its place and sinks where the body leaves: heights += change of thickness. Keeps the volume
-/// of water, leaves no vortex.
+/// The water rises where the body takes its place and sinks where the body leaves: heights += change of thickness.
+/// Keeps the volume of water, leaves no vortex.
 void displace_water(Footprint& footprint, Field& water);
 
-/// The paper's rule: inside the body the water has the body's velocity. `linear` and `angular` are the body's, `origin` its origin in
-/// the footprint's window; the velocity is taken at the height `z` above the body's origin.
+/// The paper's rule: inside the body the water has the body's velocity. `linear` and `angular` are the body's,
+/// `origin` its origin in the footprint's window; the velocity is taken at the height `z` above the body's origin.
 void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, const Vec3f& angular, float z);
 
 /// One step's push by the pressure on the body's upper side (Eq. 10); factor = dt / density.

@@ -27,7 +27,8 @@ float bilinear(const float* data, std::int32_t nx, std::int32_t ny, const GridOr
 }  // namespace
 
 Field::Field(const FieldDef& def, std::pmr::memory_resource* memory)
-    : def_(def), height_(static_cast<std::size_t>(def.nx) * static_cast<std::size_t>(def.ny), 0.0f, memory),
+    : def_(def),
+      height_(static_cast<std::size_t>(def.nx) * static_cast<std::size_t>(def.ny), 0.0f, memory),
       u_(static_cast<std::size_t>(def.nx + 1) * static_cast<std::size_t>(def.ny), 0.0f, memory),
       v_(static_cast<std::size_t>(def.nx) * static_cast<std::size_t>(def.ny + 1), 0.0f, memory) {}
 
@@ -47,7 +48,7 @@ void Field::step(float dt, float gravity, std::uint32_t threads) {
 void Field::step_velocities(float factor, float outflow, std::uint32_t threads) {
     const std::int32_t nx = def_.nx, ny = def_.ny;
     [[maybe_unused]] const bool parallel = threads > 1 && cells() >= threaded_cells;
-#pragma omp parallel for schedule(static) num_threads(static_cast<int>(threads)) if (parallel)
+#pragma omp parallel for schedule(static) num_threads(static_cast <int>(threads)) if (parallel)
     for (std::int32_t j = 0; j < ny; ++j) {
         const float* h = height_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
         float* u = u_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx + 1);
@@ -69,7 +70,7 @@ void Field::step_velocities(float factor, float outflow, std::uint32_t threads) 
 void Field::step_heights(float factor, std::uint32_t threads) {
     const std::int32_t nx = def_.nx, ny = def_.ny;
     [[maybe_unused]] const bool parallel = threads > 1 && cells() >= threaded_cells;
-#pragma omp parallel for schedule(static) num_threads(static_cast<int>(threads)) if (parallel)
+#pragma omp parallel for schedule(static) num_threads(static_cast <int>(threads)) if (parallel)
     for (std::int32_t j = 0; j < ny; ++j) {
         float* h = height_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
         const float* u = u_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx + 1);
@@ -78,8 +79,8 @@ void Field::step_heights(float factor, std::uint32_t threads) {
     }
 }
 
-// A layer in which height and velocity decay together (so that it does not reflect), the faster the nearer to the border: rate
-// r (1 - x / width)^2 with r so large that a wave that crosses it twice keeps exp(-5).
+// A layer in which height and velocity decay together (so that it does not reflect), the faster the nearer to the
+// border: rate r (1 - x / width)^2 with r so large that a wave that crosses it twice keeps exp(-5).
 void Field::damp(float dt, float speed) {
     const std::int32_t nx = def_.nx, ny = def_.ny, width = def_.border_cells;
     const float rate = 7.5f * speed / (static_cast<float>(width) * def_.cell);

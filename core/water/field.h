@@ -31,8 +31,8 @@ struct Rect {
     Rect moved(std::int32_t di, std::int32_t dj) const { return {i0 + di, j0 + dj, i1 + di, j1 + dj}; }
 };
 
-/// A point of the grid: cell (i, j) plus an offset in cells that may be larger than one. Kept apart so that the offset is a small
-/// float however far from the origin the body is.
+/// A point of the grid: cell (i, j) plus an offset in cells that may be larger than one. Kept apart so that the offset
+/// is a small float however far from the origin the body is.
 struct GridOrigin {
     std::int32_t i = 0, j = 0;
     float x = 0, y = 0;
@@ -42,8 +42,8 @@ enum class Border { absorbing, reflecting };
 
 struct FieldDef {
     std::int32_t nx = 0, ny = 0;
-    float cell = 0;     ///< m
-    float depth = 0;    ///< m
+    float cell = 0;   ///< m
+    float depth = 0;  ///< m
     Border border = Border::absorbing;
     std::int32_t border_cells = 0;
 };
@@ -57,7 +57,8 @@ public:
     /// Largest stable dt of one step: Courant number 1 / sqrt(2) in two dimensions, less a tenth.
     static float stable_step(const FieldDef& def, float gravity);
 
-    /// One leapfrog step: velocities by the slope (Eq. 7), then heights by the divergence (Eq. 8). No numerical damping.
+    /// One leapfrog step: velocities by the slope (Eq. 7), then heights by the divergence (Eq. 8). No numerical
+    /// damping.
     void step(float dt, float gravity, std::uint32_t threads);
     /// The second term of Eq. 10 over `where`: velocities += factor * gradient of pressure; factor = dt / density.
     void push(const float* pressure, const Rect& where, float factor);

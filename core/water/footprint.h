@@ -1,5 +1,5 @@
-// What one body does to the water, in a window of the water's grid that follows the body: the thickness of the body in each column,
-// the pressure on its upper side, and the waves that it made itself.
+// What one body does to the water, in a window of the water's grid that follows the body: the thickness of the body in
+// each column, the pressure on its upper side, and the waves that it made itself.
 #pragma once
 
 #include <array>
@@ -21,15 +21,16 @@ public:
     /// Starts a tick: the window follows the body's centre, which is in cell (i, j) of the water.
     void begin(std::int32_t i, std::int32_t j, const GridOrigin& body);
 
-    /// A wet piece of the surface: corners in the body's local frame, their depths, and its area as seen from above (n_z times its
-    /// area). Its share of the displaced volume, minus that area times the mean depth, goes into the columns around it; over a closed surface the shares
-    /// add up to the displaced volume. With `spread` the columns reach the wider the deeper the piece is.
+    /// A wet piece of the surface: corners in the body's local frame, their depths, and its area as seen from above
+    /// (n_z times its area). Its share of the displaced volume, minus that area times the mean depth, goes into the
+    /// columns around it; over a closed surface the shares add up to the displaced volume. With `spread` the columns
+    /// reach the wider the deeper the piece is.
     void deposit(const Vec3f corner[3], const float depth[3], float area_up, bool spread);
     /// After the last deposit: adds what was spread wide to thickness().
     void gather();
 
-    /// Pressure p on a horizontal area around a point: a Gaussian of that area's width (section 6.3), wider with depth, whose sum is
-    /// p * area.
+    /// Pressure p on a horizontal area around a point: a Gaussian of that area's width (section 6.3), wider with
+    /// depth, whose sum is p * area.
     void splat_pressure(const Vec3f& at, float pressure, float area, float depth);
 
     /// The waves that this body made, within the window: what it must not feel as a current (FRM_MODEL_OWN_WAVES).

@@ -14,15 +14,16 @@ bool SnapshotExchange::publish(const Field& field, std::uint64_t tick, double ti
         if (i == newest || slot.readers.load() != 0) continue;
         slot.snapshot.tick = tick;
         slot.snapshot.time = time;
-        copy_to_centres(field, slot.snapshot.height.data(), slot.snapshot.velocity_x.data(), slot.snapshot.velocity_y.data());
+        copy_to_centres(field, slot.snapshot.height.data(), slot.snapshot.velocity_x.data(),
+                        slot.snapshot.velocity_y.data());
         newest_.store(i);
         return true;
     }
     return false;
 }
 
-// A reader that counted itself into a slot just before the writer took it sees that the slot is not the newest any more, and
-// looks again: the writer only ever takes slots that are not the newest.
+// A reader that counted itself into a slot just before the writer took it sees that the slot is not the newest any
+// more, and looks again: the writer only ever takes slots that are not the newest.
 SnapshotExchange::Slot& SnapshotExchange::acquire() {
     for (;;) {
         const std::uint32_t newest = newest_.load();
@@ -41,9 +42,11 @@ void copy_to_centres(const Field& field, float* height, float* velocity_x, float
         const float* u = field.velocity_x() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx + 1);
         const float* v = field.velocity_y() + row;
         if (velocity_x)
-            for (std::int32_t i = 0; i < nx; ++i) velocity_x[row + static_cast<std::size_t>(i)] = 0.5f * (u[i] + u[i + 1]);
+            for (std::int32_t i = 0; i < nx; ++i)
+                velocity_x[row + static_cast<std::size_t>(i)] = 0.5f * (u[i] + u[i + 1]);
         if (velocity_y)
-            for (std::int32_t i = 0; i < nx; ++i) velocity_y[row + static_cast<std::size_t>(i)] = 0.5f * (v[i] + v[nx + i]);
+            for (std::int32_t i = 0; i < nx; ++i)
+                velocity_y[row + static_cast<std::size_t>(i)] = 0.5f * (v[i] + v[nx + i]);
     }
 }
 

@@ -1,5 +1,6 @@
-// Copies of the water for other threads. The ticking thread writes a slot that nobody reads and then names it the newest; a reader
-// counts itself in, checks that its slot is still the newest, and copies. Neither ever waits for the other.
+// Copies of the water for other threads. The ticking thread writes a slot that nobody reads and then names it the
+// newest; a reader counts itself in, checks that its slot is still the newest, and copies. Neither ever waits for the
+// other.
 #pragma once
 
 #include <array>
@@ -50,7 +51,8 @@ private:
     std::atomic<std::uint32_t> newest_{0};
 };
 
-/// Averages the face velocities to cell centres and copies the heights; arrays of field.cells() floats, each may be null.
+/// Averages the face velocities to cell centres and copies the heights; arrays of field.cells() floats, each may be
+/// null.
 void copy_to_centres(const Field& field, float* height, float* velocity_x, float* velocity_y);
 
 }  // namespace frm

@@ -32,7 +32,8 @@ public:
     /// Publishes a snapshot when the interval has passed.
     void offer_snapshot(std::uint64_t tick, double time);
 
-    /// Where a horizontal position lies in the grid. Positions more than a million cells outside are moved nearer: all is flat there.
+    /// Where a horizontal position lies in the grid. Positions more than a million cells outside are moved nearer: all
+    /// is flat there.
     GridOrigin origin_at(double x, double y) const;
 
 private:

@@ -4,6 +4,20 @@
 namespace frm {
 namespace {
 
+void hash_water(StateHash& hash, const Water& water) {
+    const FieldDef& f = water.def().field;
+    hash.value(f.nx);
+    hash.value(f.ny);
+    hash.value(f.cell);
+    hash.value(f.depth);
+    hash.value(static_cast<std::uint32_t>(f.border));
+    hash.value(f.border_cells);
+    hash.value(water.def().centre_x);
+    hash.value(water.def().centre_y);
+    water.field.hash(hash);
+    if (water.pressure()) hash.words(water.pressure(), water.field.cells());
+}
+
 void hash_body(StateHash& hash, const Body& body) {
     hash.value(body.id);
     hash.value(body.def.map->content_hash);
@@ -28,10 +42,7 @@ std::uint64_t World::hash() const {
     hash.value(def_.fluid);
     hash.value(ticks_);
     hash.value(time_);
-    if (water_) {
-        water_->field.hash(hash);
-        if (water_->pressure()) hash.words(water_->pressure(), water_->field.cells());
-    }
+    if (water_) hash_water(hash, *water_);
     for (const auto& body : bodies_) hash_body(hash, *body);
     return hash.result();
 }

@@ -76,7 +76,8 @@ void World::tick(float dt) {
     if (water_) {
         const float needed = std::ceil(dt / Field::stable_step(water_->def().field, def_.fluid.gravity));
         if (!(needed <= static_cast<float>(max_substeps)))
-            throw Error(FRM_ERROR_LIMIT, "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
+            throw Error(FRM_ERROR_LIMIT,
+                        "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
                         static_cast<double>(dt), static_cast<double>(needed), max_substeps);
         substeps = std::max(1u, static_cast<std::uint32_t>(needed));
     }

@@ -19,7 +19,7 @@ BakeOptions small_bake() {
     o.quality = Quality::draft;
     o.directions = 6;
     o.sources = 6;
-    o.cells = 4;
+    o.resolution = 4;
     o.threads = 1;
     return o;
 }
@@ -41,7 +41,8 @@ TEST_CASE("a bake is the same bytes again, with any number of threads, and pushe
             for (std::uint32_t d = 0; d < 6; ++d) {
                 const Vec3d e = map->directions.direction(d);
                 Vec3d sum;
-                for (std::uint32_t l = 0; l < 6; ++l) sum += Vec3d(map->mean[d * 6 + l].pressure) + Vec3d(map->mean[d * 6 + l].friction);
+                for (std::uint32_t l = 0; l < 6; ++l)
+                    sum += Vec3d(map->mean[d * 6 + l].pressure) + Vec3d(map->mean[d * 6 + l].friction);
                 CHECK(dot(sum, e) > 0);
                 CHECK(length(sum - e * dot(sum, e)) < 0.25 * dot(sum, e));
                 // A box face-on: 1 to 1.3 in the literature; four cells across are coarse.
@@ -59,7 +60,9 @@ TEST_CASE("a bake can be cancelled", "[bake]") {
     const BakeOptions options = small_bake();
     const BakePlan plan = plan_bake(options);
     BakeReport report;
-    CHECK_THROWS_AS(bake::bake(options, plan, [](double share, const std::string&) { return share < 0.05; }, report), FlowCancelled);
+    CHECK_THROWS_AS(bake::bake(
+                        options, plan, [](double share, const std::string&) { return share < 0.05; }, report),
+                    FlowCancelled);
 }
 
 TEST_CASE("options that cannot be are named", "[bake]") {

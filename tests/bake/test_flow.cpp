@@ -29,7 +29,7 @@ FlowCase unit_case(double reynolds, double cells, double start_up, double durati
     c.density = 1;
     c.viscosity = 1 / reynolds;
     c.reference_length = 1;
-    c.cells_across = cells;
+    c.resolution = cells;
     c.start_up = start_up;
     c.duration = duration;
     return c;
@@ -178,7 +178,7 @@ TEST_CASE("the plan says what a run takes", "[flow]") {
     const FlowPlan plan = plan_flow(test::box({1, 1, 2}), c);
     CHECK(plan.projected_area == Approx(2).epsilon(0.01));
     CHECK(plan.reference_length == Approx(std::sqrt(2.0)).epsilon(0.01));
-    CHECK(plan.cell == Approx(plan.reference_length / c.cells_across));
+    CHECK(plan.cell == Approx(plan.reference_length / c.resolution));
     CHECK(plan.reynolds == Approx(c.speed * plan.reference_length / c.viscosity));
     CHECK(plan.reynolds_solved < plan.reynolds);
     CHECK(mentions(plan.warning, "Reynolds"));
@@ -204,8 +204,8 @@ TEST_CASE("what is wrong with a case is named", "[flow]") {
     CHECK(mentions(error_with([&](FlowCase& c) { c.speed = 0; }), "speed"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.viscosity = -1; }), "viscosity"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.density = infinity; }), "density"));
-    CHECK(mentions(error_with([&](FlowCase& c) { c.cells_across = 3; }), "cells_across"));
-    CHECK(mentions(error_with([&](FlowCase& c) { c.cells_across = 1e9; }), "cells_across"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.resolution = 3; }), "resolution"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.resolution = 1e9; }), "resolution"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.reference_length = -2; }), "reference_length"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.start_up = nan; }), "start_up"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.duration = 1e9; }), "duration"));

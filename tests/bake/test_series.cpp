@@ -10,10 +10,12 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-std::vector<float> sine(std::size_t samples, double cycles_per_sample, double amplitude, double mean = 0, double slope = 0) {
+std::vector<float> sine(std::size_t samples, double cycles_per_sample, double amplitude, double mean = 0,
+                        double slope = 0) {
     std::vector<float> s;
     for (std::size_t i = 0; i < samples; ++i)
-        s.push_back(static_cast<float>(mean + slope * static_cast<double>(i) + amplitude * std::sin(2 * pi * cycles_per_sample * static_cast<double>(i))));
+        s.push_back(static_cast<float>(mean + slope * static_cast<double>(i) +
+                                       amplitude * std::sin(2 * pi * cycles_per_sample * static_cast<double>(i))));
     return s;
 }
 
@@ -30,7 +32,8 @@ TEST_CASE("a signal that is periodic already stays as it is", "[series]") {
     const PeriodicSeries p = make_periodic(signal, {256, 64, 16, 0});
     CHECK(p.mean == Approx(5));
     for (std::size_t i = 0; i < 64; ++i)
-        CHECK(static_cast<double>(p.fluctuation[i]) == Approx(2 * std::sin(2 * pi * 4 * static_cast<double>(i) / 64)).margin(1e-4));
+        CHECK(static_cast<double>(p.fluctuation[i]) ==
+              Approx(2 * std::sin(2 * pi * 4 * static_cast<double>(i) / 64)).margin(1e-4));
 }
 
 TEST_CASE("the seam is as smooth as the rest", "[series]") {

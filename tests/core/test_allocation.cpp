@@ -21,7 +21,12 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
     if (void* memory = std::aligned_alloc(a, (size + a - 1) / a * a)) return memory;
     throw std::bad_alloc();
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    ++allocations;
+    return std::malloc(size ? size : 1);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
@@ -34,7 +39,8 @@ TEST_CASE("a tick and a motion allocate nothing", "[allocation]") {
     world.tick(0.002f);
     const std::size_t before = allocations.load();
     for (int t = 0; t < 200; ++t) {
-        world.set_motion(body, {{0.004 * t, 0, 0.1 - 0.001 * t}, test::turned({1, 0, 0}, 0.01 * t)}, {{2, 0, -0.5f}, {5, 0, 0}});
+        world.set_motion(body, {{0.004 * t, 0, 0.1 - 0.001 * t}, test::turned({1, 0, 0}, 0.01 * t)},
+                         {{2, 0, -0.5f}, {5, 0, 0}});
         world.tick(0.002f);
     }
     CHECK(allocations.load() == before);

@@ -8,8 +8,8 @@ namespace {
 
 struct Host {
     std::uint32_t axes;
-    frm_vec3 up;        ///< the host's up
-    frm_vec3 mesh_up;   ///< the mesh's y axis (glTF's up) in the host's body axes
+    frm_vec3 up;       ///< the host's up
+    frm_vec3 mesh_up;  ///< the mesh's y axis (glTF's up) in the host's body axes
 };
 
 const Host hosts[] = {{FRM_AXES_Y_UP_RIGHT, {0, 1, 0}, {0, 1, 0}},
@@ -59,8 +59,8 @@ TEST_CASE("poses, twists and wrenches go in and out unchanged", "[axes]") {
     }
 }
 
-// A point of the body, seen from the host: rotated by the host's own quaternion in the host's own axes (left-handed ones turn the
-// other way round, by the same formula), it must land where the library's rotation puts it.
+// A point of the body, seen from the host: rotated by the host's own quaternion in the host's own axes (left-handed
+// ones turn the other way round, by the same formula), it must land where the library's rotation puts it.
 TEST_CASE("a rotation in the host's axes moves points as the host sees it", "[axes]") {
     const frm_quaternion q{0.2f, 0.4f, -0.1f, 0.888819f};
     const Rotation<float> host_rotation(Quat<float>{q.x, q.y, q.z, q.w});
@@ -75,12 +75,14 @@ TEST_CASE("a rotation in the host's axes moves points as the host sees it", "[ax
     }
 }
 
-// v = w x r must hold in the library's axes for what it was in the host's; a left-handed host's cross product is mirrored.
+// v = w x r must hold in the library's axes for what it was in the host's; a left-handed host's cross product is
+// mirrored.
 TEST_CASE("angular velocity keeps its sense", "[axes]") {
     for (std::uint32_t a = 0; a < 4; ++a) {
         const Axes axes(a);
         const Vec3f w(0.3f, -0.2f, 0.9f), r(1, 2, -0.5f);
-        const Vec3f v = cross(w, r);  // by the same formula in every host: left-handed axes have a left-handed cross product
+        const Vec3f v =
+            cross(w, r);  // by the same formula in every host: left-handed axes have a left-handed cross product
         const Vec3f here = cross(axes.axial_in({w.x, w.y, w.z}), axes.vector_in({r.x, r.y, r.z}));
         const Vec3f expected = axes.vector_in({v.x, v.y, v.z});
         CHECK(length(here - expected) < 1e-6f);

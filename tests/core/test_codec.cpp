@@ -12,7 +12,8 @@ using namespace frm;
 namespace {
 
 std::vector<std::uint8_t> sample_file() {
-    static const std::vector<std::uint8_t> file = encode_map(*test::map_of(test::fine_box({0.2, 0.1, 0.3}, 0.1), 6, 1, 16));
+    static const std::vector<std::uint8_t> file =
+        encode_map(*test::map_of(test::fine_box({0.2, 0.1, 0.3}, 0.1), 6, 1, 16));
     return file;
 }
 
@@ -29,7 +30,8 @@ frm_status status_of(const std::vector<std::uint8_t>& file, std::string* text = 
 
 /// Makes the header fit what was changed behind it, as someone who means harm would.
 void mend_header(std::vector<std::uint8_t>& file) {
-    const std::uint64_t hash = fnv1a(file.data() + format::header_bytes, file.size() - format::header_bytes), size = file.size();
+    const std::uint64_t hash = fnv1a(file.data() + format::header_bytes, file.size() - format::header_bytes),
+                        size = file.size();
     for (int i = 0; i < 8; ++i) {
         file[16 + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(hash >> (8 * i));
         file[24 + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(size >> (8 * i));
@@ -87,7 +89,8 @@ TEST_CASE("damage with a matching header does not crash", "[codec]") {
         std::vector<std::uint8_t> other = file;
         const int changes = 1 + static_cast<int>(random() % 3);
         for (int k = 0; k < changes; ++k)
-            other[format::header_bytes + random() % (other.size() - format::header_bytes)] = static_cast<std::uint8_t>(random());
+            other[format::header_bytes + random() % (other.size() - format::header_bytes)] =
+                static_cast<std::uint8_t>(random());
         if (i % 5 == 0) other.resize(format::header_bytes + random() % (other.size() - format::header_bytes));
         mend_header(other);
         accepted += status_of(other) == FRM_OK;

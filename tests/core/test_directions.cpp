@@ -48,7 +48,8 @@ TEST_CASE("weights are a partition of unity on three neighbours", "[directions]"
                 REQUIRE(w.weight[k] >= 0);
                 sum += w.weight[k];
                 // No neighbour is further than the longest edge of the set: 90 degrees at n = 1.
-                if (w.weight[k] > 0) REQUIRE(dot(set.direction(w.index[k]), e) > std::cos(std::min(1.5708, 2.5 / n)) - 1e-6);
+                if (w.weight[k] > 0)
+                    REQUIRE(dot(set.direction(w.index[k]), e) > std::cos(std::min(1.5708, 2.5 / n)) - 1e-6);
             }
             REQUIRE(sum == Approx(1).margin(1e-5));
         }

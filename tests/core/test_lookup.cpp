@@ -18,8 +18,11 @@ TEST_CASE("at a baked direction and sample the lookup gives what was stored", "[
             const std::int16_t* stored = &map->fluctuation[((std::size_t{d} * 6 + 3) * 16 + s) * 6];
             for (int c = 0; c < 3; ++c) {
                 const float scale = length(mean.pressure) + length(mean.friction);
-                REQUIRE(force.pressure[c] == Approx(mean.pressure[c] + map->step[d] * static_cast<float>(stored[c])).margin(1e-4 * scale));
-                REQUIRE(force.friction[c] == Approx(mean.friction[c] + map->step[d] * static_cast<float>(stored[c + 3])).margin(1e-4 * scale));
+                REQUIRE(force.pressure[c] ==
+                        Approx(mean.pressure[c] + map->step[d] * static_cast<float>(stored[c])).margin(1e-4 * scale));
+                REQUIRE(
+                    force.friction[c] ==
+                    Approx(mean.friction[c] + map->step[d] * static_cast<float>(stored[c + 3])).margin(1e-4 * scale));
             }
         }
     }
@@ -61,8 +64,9 @@ TEST_CASE("single precision agrees with a double-precision reading of the map", 
             for (int c = 0; c < 3; ++c) {
                 const double a = map->fluctuation[(cell * 32 + before) * 6 + static_cast<std::size_t>(c)];
                 const double b = map->fluctuation[(cell * 32 + (before + 1) % 32) * 6 + static_cast<std::size_t>(c)];
-                expected[c] += static_cast<double>(e.weight[k]) * (static_cast<double>(map->mean[cell].pressure[c]) +
-                                                                   static_cast<double>(map->step[e.index[k]]) * (a + share * (b - a)));
+                expected[c] += static_cast<double>(e.weight[k]) *
+                               (static_cast<double>(map->mean[cell].pressure[c]) +
+                                static_cast<double>(map->step[e.index[k]]) * (a + share * (b - a)));
             }
         }
         worst = std::max(worst, length(expected - Vec3d(force.pressure)));

@@ -2,8 +2,8 @@
 
 #include "tests/support/library.h"
 
-using frm::test::Library;
 using frm::test::Folder;
+using frm::test::Library;
 using namespace frm;
 
 namespace {

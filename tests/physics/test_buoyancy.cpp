@@ -20,8 +20,8 @@ Forces forces_of(const BodyDef& def, const WorldDef& world_def = {}) {
     return body.forces;
 }
 
-/// Volume of a convex body under the plane z = 0 and the moment of that volume, by cutting its tetrahedra (a fan from the origin of
-/// signed volumes) in double precision: another way than integrating pressure over the surface.
+/// Volume of a convex body under the plane z = 0 and the moment of that volume, by cutting its tetrahedra (a fan from
+/// the origin of signed volumes) in double precision: another way than integrating pressure over the surface.
 struct Submerged {
     double volume = 0;
     Vec3d moment;
@@ -58,10 +58,13 @@ void add_tetrahedron(Submerged& sum, const Vec3d& a, const Vec3d& b, const Vec3d
 }
 
 Submerged submerged(const Map& map, const BodyDef& def) {
-    const Rotation<double> rotation(Quat<double>{static_cast<double>(def.pose.rotation.x), static_cast<double>(def.pose.rotation.y),
-                                                 static_cast<double>(def.pose.rotation.z), static_cast<double>(def.pose.rotation.w)});
+    const Rotation<double> rotation(
+        Quat<double>{static_cast<double>(def.pose.rotation.x), static_cast<double>(def.pose.rotation.y),
+                     static_cast<double>(def.pose.rotation.z), static_cast<double>(def.pose.rotation.w)});
     Submerged sum;
-    const auto place = [&](const Vec3f& v) { return rotation.to_world(Vec3d(v) * static_cast<double>(def.scale)) + def.pose.position; };
+    const auto place = [&](const Vec3f& v) {
+        return rotation.to_world(Vec3d(v) * static_cast<double>(def.scale)) + def.pose.position;
+    };
     const Vec3d apex = def.pose.position;
     for (const auto& t : map.triangles) {
         const Vec3d a = place(map.vertices[t[0]]), b = place(map.vertices[t[1]]), c = place(map.vertices[t[2]]);

@@ -56,7 +56,9 @@ TEST_CASE("a body at rest leaves the water at rest, and ripples do not grow at i
         CHECK(largest(water.field) == 0);
         std::vector<float> h(128 * 128, 0.0f);
         for (int j = 0; j < 128; ++j)
-            for (int i = 0; i < 128; ++i) h[static_cast<std::size_t>(j * 128 + i)] = 0.001f * std::exp(-0.06f * static_cast<float>((i - 90) * (i - 90) + (j - 64) * (j - 64)));
+            for (int i = 0; i < 128; ++i)
+                h[static_cast<std::size_t>(j * 128 + i)] =
+                    0.001f * std::exp(-0.06f * static_cast<float>((i - 90) * (i - 90) + (j - 64) * (j - 64)));
         world.set_height(h.data());
         for (int t = 0; t < 1000; ++t) world.tick(0.002f);
         CHECK(largest(water.field) < 1e-4f);
@@ -80,13 +82,15 @@ TEST_CASE("towed under calm water a body feels what its map says", "[coupling]")
         }
         return mean;
     };
-    const Vec3d deep = towed(model_displacement | model_own_waves, -0.8, true), map = towed(model_displacement | model_own_waves, -0.8, false);
+    const Vec3d deep = towed(model_displacement | model_own_waves, -0.8, true),
+                map = towed(model_displacement | model_own_waves, -0.8, false);
     CHECK(std::fabs(deep.x - map.x) < 0.01 * std::fabs(map.x));
     CHECK(std::fabs(deep.y - map.y) < 0.01 * std::fabs(map.x));
     // The paper's rule to the letter drags the water along, and feels next to nothing.
     const Vec3d paper = towed(model_paper, -0.8, true);
     CHECK(std::fabs(paper.x) < 0.2 * std::fabs(map.x));
-    // The repair of what is felt mends most of that rule too; what it does not see is the current that it leaves beyond the window.
+    // The repair of what is felt mends most of that rule too; what it does not see is the current that it leaves
+    // beyond the window.
     const Vec3d mended = towed(model_own_waves, -0.8, true);
     CHECK(mended.x == Approx(map.x).epsilon(0.15));
 }
@@ -102,7 +106,8 @@ TEST_CASE("another body's waves are felt in full", "[coupling]") {
         float most = 0;
         for (int t = 0; t < 800; ++t) {
             const double phase = 0.002 * t * 8;
-            world.set_motion(pusher, {{-1.5, 0, 0.03 * std::sin(phase)}, {}}, {{0, 0, static_cast<float>(0.24 * std::cos(phase))}, {}});
+            world.set_motion(pusher, {{-1.5, 0, 0.03 * std::sin(phase)}, {}},
+                             {{0, 0, static_cast<float>(0.24 * std::cos(phase))}, {}});
             world.tick(0.002f);
             most = std::fmax(most, length(still.sources[0].relative_velocity));
         }
@@ -169,7 +174,9 @@ TEST_CASE("ticks are the same bits from run to run, whatever has been before", "
         Body& two = world.create_body(body_of(slab_map(), {0.4, 0.1, -0.05}));
         for (int t = 0; t < 200; ++t) {
             const double phase = 0.02 * t;
-            world.set_motion(one, {{-0.4 + 0.2 * std::sin(phase), 0, 0.05 * std::cos(phase)}, test::turned({1, 1, 0}, 0.3)}, {{0.5f, 0, 0.1f}, {0.2f, 0, 1}});
+            world.set_motion(one,
+                             {{-0.4 + 0.2 * std::sin(phase), 0, 0.05 * std::cos(phase)}, test::turned({1, 1, 0}, 0.3)},
+                             {{0.5f, 0, 0.1f}, {0.2f, 0, 1}});
             world.set_motion(two, {{0.4, 0.1 * std::cos(phase), -0.05}, {}}, {{0, -0.3f, 0}, {}});
             world.tick(0.002f);
         }

@@ -21,7 +21,8 @@ struct Steady {
 };
 
 /// Mean forces over whole periods of the map, deep in a fluid without a surface.
-Steady steady(const Vec3f& velocity, float dt, int ticks, float scale = 1, const Fluid& fluid = {9.80665f, 1000, 1e-6f}) {
+Steady steady(const Vec3f& velocity, float dt, int ticks, float scale = 1,
+              const Fluid& fluid = {9.80665f, 1000, 1e-6f}) {
     WorldDef def;
     def.everywhere = true;
     def.fluid = fluid;
@@ -41,7 +42,8 @@ Steady steady(const Vec3f& velocity, float dt, int ticks, float scale = 1, const
 
 }  // namespace
 
-TEST_CASE("pressure goes with the square of the speed, friction with the speed, map time with the speed", "[resistance]") {
+TEST_CASE("pressure goes with the square of the speed, friction with the speed, map time with the speed",
+          "[resistance]") {
     const float u0 = box_map()->facts.base_speed, period = box_map()->facts.period;
     const int ticks = 256;
     const Vec3f e(0.6f, -0.64f, 0.48f);
@@ -66,7 +68,8 @@ TEST_CASE("the force is the map's own along a baked direction", "[resistance]") 
     // The water goes along e past a body that moves along -e.
     const Steady s = steady(Vec3f(e) * -map.facts.base_speed, map.facts.period / 256, 256);
     Vec3d expected;
-    for (std::uint32_t l = 0; l < map.source_count(); ++l) expected += Vec3d(map.mean[d * map.source_count() + l].pressure);
+    for (std::uint32_t l = 0; l < map.source_count(); ++l)
+        expected += Vec3d(map.mean[d * map.source_count() + l].pressure);
     CHECK(length(s.pressure - expected) < 1e-4 * length(expected));
     CHECK(dot(s.pressure, e) > 0);
 }
@@ -90,7 +93,8 @@ TEST_CASE("torque is about the body's origin", "[resistance]") {
     const Quat<float> q = test::turned({1, 2, -1}, 1.1);
     Body& body = world.create_body(body_of(box_map(), {3, 4, 5}, q, {{0.4f, 0.1f, -0.3f}, {0.5f, -0.2f, 0.9f}}));
     world.tick(0.002f);
-    const Rotation<double> r(Quat<double>{static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z), static_cast<double>(q.w)});
+    const Rotation<double> r(Quat<double>{static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z),
+                                          static_cast<double>(q.w)});
     Vec3d torque, force;
     for (std::size_t l = 0; l < body.sources.size(); ++l) {
         const Vec3d f = Vec3d(body.sources[l].pressure);

@@ -33,7 +33,8 @@ std::vector<float> bump(std::int32_t n, double x, double y, double width, double
     std::vector<float> h;
     for (std::int32_t j = 0; j < n; ++j)
         for (std::int32_t i = 0; i < n; ++i)
-            h.push_back(static_cast<float>(height * std::exp(-((i - x) * (i - x) + (j - y) * (j - y)) / (2 * width * width))));
+            h.push_back(
+                static_cast<float>(height * std::exp(-((i - x) * (i - x) + (j - y) * (j - y)) / (2 * width * width))));
     return h;
 }
 
@@ -47,7 +48,8 @@ TEST_CASE("a standing wave has the period of the basin's mode", "[waves]") {
     const int mode = 4;  // 32 cells a wavelength
     std::vector<float> h;
     for (std::int32_t j = 0; j < n; ++j)
-        for (std::int32_t i = 0; i < n; ++i) h.push_back(static_cast<float>(0.01 * std::cos(pi * mode * (i + 0.5) / n)));
+        for (std::int32_t i = 0; i < n; ++i)
+            h.push_back(static_cast<float>(0.01 * std::cos(pi * mode * (i + 0.5) / n)));
     world.set_height(h.data());
     const double wavelength = 2.0 * n * static_cast<double>(cell) / mode;
     const double period = wavelength / std::sqrt(g * static_cast<double>(depth));
@@ -81,7 +83,8 @@ TEST_CASE("a pulse runs at sqrt(g d)", "[waves]") {
     Water& water = world.create_water(test::water_of(n, cell, depth, Border::reflecting));
     std::vector<float> h;
     for (std::int32_t j = 0; j < n; ++j)
-        for (std::int32_t i = 0; i < n; ++i) h.push_back(static_cast<float>(0.02 * std::exp(-0.5 * std::pow((i - 60.0) / 12, 2))));
+        for (std::int32_t i = 0; i < n; ++i)
+            h.push_back(static_cast<float>(0.02 * std::exp(-0.5 * std::pow((i - 60.0) / 12, 2))));
     world.set_height(h.data());
     const double speed = std::sqrt(g * static_cast<double>(depth));
     const int ticks = 500;
@@ -107,7 +110,8 @@ TEST_CASE("a pressure held still raises the water by p / (rho g)", "[waves]") {
     for (std::int32_t j = 30; j < 66; ++j)
         for (std::int32_t i = 30; i < 66; ++i) {
             const std::size_t at = static_cast<std::size_t>(j * n + i);
-            worst = std::fmax(worst, std::fabs(static_cast<double>(water.field.height()[at]) - static_cast<double>(p[at]) / (1000 * g)));
+            worst = std::fmax(worst, std::fabs(static_cast<double>(water.field.height()[at]) -
+                                               static_cast<double>(p[at]) / (1000 * g)));
         }
     CHECK(worst < 1e-3 * 200 / (1000 * g));
     world.set_pressure(nullptr);
@@ -124,10 +128,12 @@ TEST_CASE("a closed basin keeps its volume and its energy", "[waves]") {
     double highest = 0, lowest = 1e9;
     for (int t = 0; t < 20000; ++t) {
         world.tick(0.004f);
-        if (t % 50 == 0) highest = std::fmax(highest, energy(water.field)), lowest = std::fmin(lowest, energy(water.field));
+        if (t % 50 == 0)
+            highest = std::fmax(highest, energy(water.field)), lowest = std::fmin(lowest, energy(water.field));
     }
     CHECK(volume(water.field) == Approx(before).epsilon(1e-5));
-    // The leapfrog step keeps an energy that differs from this one by the Courant number's share, so it swings but does not drift.
+    // The leapfrog step keeps an energy that differs from this one by the Courant number's share, so it swings but
+    // does not drift.
     CHECK(energy(water.field) == Approx(energy_before).epsilon(0.03));
     CHECK(highest < 1.05 * energy_before);
     CHECK(lowest > 0.95 * energy_before);
@@ -152,7 +158,8 @@ TEST_CASE("steps are divided where the grid asks for it, with the same result", 
         Water& water = world.create_water(test::water_of(n, 0.02f, 0.5f, Border::reflecting));
         world.set_height(bump(n, 32, 32, 6, 0.01).data());
         for (int t = 0; t < ticks; ++t) world.tick(dt);
-        return std::pair(std::vector<float>(water.field.height(), water.field.height() + water.field.cells()), world.substeps());
+        return std::pair(std::vector<float>(water.field.height(), water.field.height() + water.field.cells()),
+                         world.substeps());
     };
     const auto [fine, one] = run(0.005f, 60);
     const auto [coarse, many] = run(0.1f, 3);
@@ -185,13 +192,15 @@ TEST_CASE("a window's contents move by whole cells", "[waves]") {
     const std::int32_t n = 5;
     std::vector<float> data;
     for (int i = 0; i < n * n; ++i) data.push_back(static_cast<float>(i + 1));
-    for (const auto& [di, dj] : {std::pair(1, 0), std::pair(-2, 1), std::pair(0, -3), std::pair(2, 2), std::pair(7, 0)}) {
+    for (const auto& [di, dj] :
+         {std::pair(1, 0), std::pair(-2, 1), std::pair(0, -3), std::pair(2, 2), std::pair(7, 0)}) {
         std::vector<float> moved = data;
         shift_array(moved.data(), n, n, di, dj);
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
                 const int fi = i + di, fj = j + dj;
-                const float expected = fi < 0 || fj < 0 || fi >= n || fj >= n ? 0.0f : data[static_cast<std::size_t>(fj * n + fi)];
+                const float expected =
+                    fi < 0 || fj < 0 || fi >= n || fj >= n ? 0.0f : data[static_cast<std::size_t>(fj * n + fi)];
                 CHECK(moved[static_cast<std::size_t>(j * n + i)] == expected);
             }
     }

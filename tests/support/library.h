@@ -39,7 +39,8 @@ struct Library {
 /// A folder of its own for each test, gone afterwards.
 struct Folder {
     Folder() {
-        path = std::filesystem::temp_directory_path() / ("frm-test-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)));
+        path = std::filesystem::temp_directory_path() /
+               ("frm-test-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)));
         std::filesystem::create_directories(path);
     }
     ~Folder() { std::filesystem::remove_all(path); }

@@ -13,17 +13,20 @@ namespace frm::test {
 
 inline std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
 
-inline std::shared_ptr<const Map> map_of(const bake::Surface& surface, std::uint32_t sources = 12, std::uint32_t frequency = 2,
-                                         std::uint32_t samples = 32) {
+inline std::shared_ptr<const Map> map_of(const bake::Surface& surface, std::uint32_t sources = 12,
+                                         std::uint32_t frequency = 2, std::uint32_t samples = 32) {
     return std::make_shared<Map>(bake::formula_map(surface, sources, frequency, samples));
 }
 
-inline bake::Surface fine_box(const Vec3d& size, double edge) { return bake::tessellate(box(size), edge, 20000).surface; }
+inline bake::Surface fine_box(const Vec3d& size, double edge) {
+    return bake::tessellate(box(size), edge, 20000).surface;
+}
 
 /// Rotation by `angle` about an axis of any length.
 inline Quat<float> turned(const Vec3d& axis, double angle) {
     const Vec3d n = axis * (std::sin(angle / 2) / length(axis));
-    return {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z), static_cast<float>(std::cos(angle / 2))};
+    return {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z),
+            static_cast<float>(std::cos(angle / 2))};
 }
 
 inline BodyDef body_of(std::shared_ptr<const Map> map, const Vec3d& position = {}, const Quat<float>& rotation = {},
@@ -35,7 +38,8 @@ inline BodyDef body_of(std::shared_ptr<const Map> map, const Vec3d& position = {
     return def;
 }
 
-inline WaterDef water_of(std::int32_t cells, float cell, float depth, Border border = Border::absorbing, std::int32_t border_cells = 16) {
+inline WaterDef water_of(std::int32_t cells, float cell, float depth, Border border = Border::absorbing,
+                         std::int32_t border_cells = 16) {
     WaterDef def;
     def.field = {cells, cells, cell, depth, border, border_cells};
     return def;

@@ -28,6 +28,9 @@ def candidates() -> list[str]:
     if len(package.parents) > 2 and (package.parents[2] / "include" / "frm.h").is_file():
         built = [path for name in names for path in package.parents[2].glob(f"build/*/{name}")]
         found += sorted(built, key=lambda path: path.stat().st_mtime, reverse=True)
+    # Installed as PREFIX/share/frm/python/frm, beside PREFIX/lib.
+    if len(package.parents) > 3 and package.parent.parts[-3:] == ("share", "frm", "python"):
+        found += [path for name in names for path in sorted(package.parents[3].glob(f"lib*/**/{name}"))]
     installed = ctypes.util.find_library("frm")
     return [str(path) for path in found] + ([installed] if installed else [])
 
