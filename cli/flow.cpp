@@ -236,12 +236,12 @@ void add_flow(CLI::App& app) {
         ->check(number_within(4, 512))
         ->type_name("N")
         ->capture_default_str();
-    command->add_option("--start-up", o.flow.start_up, "reference lengths travelled before the series begins")
-        ->check(number_within(0, 1e5))
+    command->add_option("--start-up", o.flow.start_up, "reference lengths travelled before the series begins, 0.5 at least")
+        ->check(number_within(0.5, 1e4))
         ->type_name("N")
         ->capture_default_str();
-    command->add_option("--duration", o.flow.duration, "reference lengths travelled during the series")
-        ->check(number_within(1e-2, 1e5))
+    command->add_option("--duration", o.flow.duration, "reference lengths travelled during the series, 0.5 at least")
+        ->check(number_within(0.5, 1e5))
         ->type_name("N")
         ->capture_default_str();
     command->add_option("--threads", o.flow.threads, "0: all cores. The result does not depend on it")

@@ -56,7 +56,7 @@ ProgressBar::~ProgressBar() {
 bool ProgressBar::update(double share, const std::string& note) {
     const Clock::time_point now = Clock::now();
     const double elapsed = seconds_between(begin_, now);
-    const double pause = terminal_ ? 0.1 : 5.0;
+    const double pause = terminal_ ? 0.1 : std::max(5.0, elapsed / 20);
     if (elapsed < 2 || (visible_ && seconds_between(shown_, now) < pause)) return !interrupted();
     visible_ = true;
     shown_ = now;

@@ -14,6 +14,7 @@ void lay_displacement(Body& body, float level, bool spread) {
         const Corner corner[3] = {{body.local[index[0]], level - body.local[index[0]].z},
                                   {body.local[index[1]], level - body.local[index[1]].z},
                                   {body.local[index[2]], level - body.local[index[2]].z}};
+        if (!(corner[0].depth > 0 || corner[1].depth > 0 || corner[2].depth > 0)) continue;
         const float area_up = vector_area_of(corner[0].at, corner[1].at, corner[2].at).z;
         add_wet_part(corner, [&](const Corner& a, const Corner& b, const Corner& c, float share) {
             const Vec3f at[3] = {a.at, b.at, c.at};

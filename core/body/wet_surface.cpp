@@ -65,6 +65,10 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
         bool partly = false;
         for (std::uint32_t t = map.region_begin[l]; t < map.region_begin[l + 1]; ++t) {
             const auto& index = map.triangles[t];
+            if (!(body.depth[index[0]] > 0 || body.depth[index[1]] > 0 || body.depth[index[2]] > 0)) {
+                partly = true;
+                continue;
+            }
             const Corner corner[3] = {{body.local[index[0]], body.depth[index[0]]},
                                       {body.local[index[1]], body.depth[index[1]]},
                                       {body.local[index[2]], body.depth[index[2]]}};
