@@ -172,6 +172,7 @@ nlohmann::ordered_json summary(const Scene& scene, const Run& run, const Options
     j["ticks"] = run.times().count();
     j["dt"] = scene.dt;
     j["seconds"] = static_cast<double>(run.times().count()) * scene.dt;
+    j["tick_seconds"] = 1e-6 * run.times().mean() * static_cast<double>(run.times().count());
     j["world_hash"] = hash;
     j["bodies"] = nlohmann::ordered_json::array();
     for (const RunningBody& b : run.bodies())

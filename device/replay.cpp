@@ -16,7 +16,9 @@ Replay::Replay(api::Context& context, const char* path) : context_(context), rea
     reader_.rewind();
     try {
         advance_to_tick();
-        if (!world_) throw Error(FRM_ERROR_CORRUPT, "%s: holds no world", path);
+        if (!world_)
+            throw Error(FRM_ERROR_CORRUPT, "%s: holds no world%s", path,
+                        info_.torn ? ": it was cut off inside its first block" : "");
     } catch (...) {
         release();
         throw;

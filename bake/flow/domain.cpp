@@ -200,9 +200,9 @@ Walls walls_of(const std::vector<Segment>& segments, const Domain& d) {
 
 [[noreturn]] void refuse_memory(double bytes, std::uint64_t limit) {
     constexpr double mib = 1 << 20;
-    throw BakeError("flow: about " + number(bytes / mib) + " MiB are needed and memory_limit is " +
+    throw BakeError("flow: about " + number(bytes / mib) + " MiB are needed and the limit (memory_limit) is " +
                     number(static_cast<double>(limit) / mib) +
-                    " MiB; lower resolution or give a larger reference_length");
+                    " MiB; lower the resolution");
 }
 
 void advise(const Surface& surface, const Vec3d& size, const FlowCase& c, FlowPlan& plan) {
@@ -320,7 +320,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     const double start = std::ceil(c.start_up * per_length);
     const double count = std::max(8.0, std::floor(c.duration * per_length / interval));
     if (start + count * interval > static_cast<double>(most_steps)) {
-        throw BakeError("flow: start_up and duration take " + number(start + count * interval) +
+        throw BakeError("flow: start_up and duration together take " + number(start + count * interval) +
                         " steps; lower duration or resolution");
     }
     d.interval_steps = static_cast<std::uint32_t>(interval);

@@ -80,13 +80,13 @@ void renumber(Regions& regions) {
 
 Regions split_regions(const Surface& surface, std::uint32_t count) {
     if (count < 1 || count > kMostRegions) {
-        throw BakeError("regions: " + std::to_string(count) + " asked for; 1 to " + std::to_string(kMostRegions) +
+        throw BakeError("regions: " + std::to_string(count) + " haptic sources asked for; 1 to " + std::to_string(kMostRegions) +
                         " are possible");
     }
     if (count > surface.triangles.size()) {
-        throw BakeError("regions: " + std::to_string(count) + " asked for, but the surface has only " +
+        throw BakeError("regions: " + std::to_string(count) + " haptic sources asked for, but the surface has only " +
                         std::to_string(surface.triangles.size()) +
-                        " triangles; ask for fewer, or for a finer tessellation");
+                        " triangles; ask for fewer sources or for more triangles");
     }
     const Neighbours neighbours = find_neighbours(surface, "regions");
     std::vector<std::uint32_t> shell;

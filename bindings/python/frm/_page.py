@@ -10,6 +10,7 @@ import numpy as np
 from . import _figures
 from ._abi import MapInfo
 from ._base import version
+from ._progress import Progress
 from ._replayed import PARTS, STATES, BodySeries, Replayed
 from ._style import STYLE
 from ._words import number, plural, quantity, vector
@@ -103,8 +104,8 @@ def _head(replayed: Replayed, recording: Path, run: dict, scene: str) -> str:
         facts.append(("Water cells", f"{water.nx} × {water.ny}"))
     if replayed.info.devices:
         facts.append(("Devices", number(replayed.info.devices)))
-    if "wall_seconds" in run:
-        facts.append(("Wall time", quantity(float(run["wall_seconds"]), "s")))
+    if "tick_seconds" in run:
+        facts.append(("Time in ticks", quantity(float(run["tick_seconds"]), "s")))
     facts = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in facts)
     notes = []
     if replayed.info.torn:
@@ -210,12 +211,14 @@ def _water(replayed: Replayed, scale) -> str:
     heights = [(frame.height.max(), frame.height.min(), frame.time) for frame in replayed.frames]
     crest, trough = max(heights), min(heights, key=lambda item: item[1])
     pictures = []
-    for frame in replayed.frames:
-        total = sum((force for _, force, _ in frame.bodies.values()), np.zeros(3))
-        forces = f" · force {vector(total, 'N')}" if frame.bodies else ""
-        pictures.append(f'<figure><img src="{_figures.frame(scale, frame)}" '
-                        f'alt="Water height from above after {frame.time:.3f} s">'
-                        f"<figcaption>tick {number(frame.tick)}{forces}</figcaption></figure>")
+    with Progress("drawing frames", len(replayed.frames)) as progress:
+        for frame in replayed.frames:
+            total = sum((force for _, force, _ in frame.bodies.values()), np.zeros(3))
+            forces = f" · force {vector(total, 'N')}" if frame.bodies else ""
+            pictures.append(f'<figure><img src="{_figures.frame(scale, frame)}" '
+                            f'alt="Water height from above after {frame.time:.3f} s">'
+                            f"<figcaption>tick {number(frame.tick)}{forces}</figcaption></figure>")
+            progress(len(pictures))
     legend = ""
     if any(frame.bodies for frame in replayed.frames):
         legend = (" Dots are the haptic sources, filled where they are wet; thin arrows show the resistance "
