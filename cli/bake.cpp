@@ -27,7 +27,7 @@ void print_plan(const bake::BakePlan& plan) {
     for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     std::uint64_t bytes = 0;
     for (const bake::FlowPlan& flow : plan.flows) bytes = std::max(bytes, flow.bytes);
-    std::fprintf(stderr, "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory\n",
+    std::fprintf(stderr, "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory for each that runs at a time\n",
                  plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), plan.cell_updates,
                  static_cast<double>(bytes) / 1e6);
 }

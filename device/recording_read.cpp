@@ -1,6 +1,7 @@
 #include <zstd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 
 #include "device/recording.h"
@@ -8,16 +9,35 @@
 namespace frm::device {
 namespace {
 
+// What the interface refuses from a host (core/api) a recording cannot hold either: a tick counts on it.
+void require(bool good, const char* what) {
+    if (!good) throw Error(FRM_ERROR_CORRUPT, "%s is out of range", what);
+}
+
+template <typename T>
+bool within(T value, double low, double high) {
+    return static_cast<double>(value) >= low && static_cast<double>(value) <= high;  // false for NaN
+}
+
+bool within(const Vec3f& v, double limit) {
+    return within(v.x, -limit, limit) && within(v.y, -limit, limit) && within(v.z, -limit, limit);
+}
+
 Pose read_pose(ByteReader& r) {
     Pose p;
     p.position.x = r.f64(), p.position.y = r.f64(), p.position.z = r.f64();
     p.rotation.x = r.f32(), p.rotation.y = r.f32(), p.rotation.z = r.f32(), p.rotation.w = r.f32();
+    const Quat<float>& q = p.rotation;
+    require(within(p.position.x, -1e9, 1e9) && within(p.position.y, -1e9, 1e9) && within(p.position.z, -1e9, 1e9) &&
+                within(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 0.99, 1.01),
+            "a pose");
     return p;
 }
 
 Twist read_twist(ByteReader& r) {
     Twist t;
     t.linear = r.vec3(), t.angular = r.vec3();
+    require(within(t.linear, 1e4) && within(t.angular, 1e4), "a twist");
     return t;
 }
 
@@ -45,6 +65,10 @@ event::World read_world(ByteReader& r) {
     e.def.model = r.u32(), e.def.everywhere = r.u32() != 0, e.def.level = r.f64();
     e.def.fluid.gravity = r.f32(), e.def.fluid.density = r.f32(), e.def.fluid.viscosity = r.f32();
     e.hash_interval = r.u32(), e.axes = r.u32();
+    require(e.def.model <= FRM_MODEL_DEFAULT && within(e.def.level, -1e9, 1e9) &&
+                within(e.def.fluid.gravity, 0, 1000) && within(e.def.fluid.density, 1e-3f, 1e5) &&
+                within(e.def.fluid.viscosity, 1e-9f, 1e2) && e.axes <= FRM_AXES_Z_UP_LEFT,
+            "the world's definition");
     return e;
 }
 
@@ -62,9 +86,13 @@ event::Water read_water(ByteReader& r) {
     f.depth = r.f32();
     f.border = r.u32() ? Border::reflecting : Border::absorbing, f.border_cells = static_cast<std::int32_t>(r.u32());
     e.def.centre_x = r.f64(), e.def.centre_y = r.f64(), e.def.snapshot_interval = r.f32();
-    if (f.nx < 8 || f.nx > 8192 || f.ny < 8 || f.ny > 8192 || f.border_cells < 0 || f.border_cells > 64 ||
-        !(f.cell > 0) || !(f.depth > 0))
-        throw Error(FRM_ERROR_CORRUPT, "the water's size is out of range");
+    // The absorbing layer must fit: Field::damp counts on it.
+    const bool layer = f.border == Border::reflecting || (3 * f.border_cells < f.nx && 3 * f.border_cells < f.ny);
+    require(f.nx >= 8 && f.nx <= 8192 && f.ny >= 8 && f.ny <= 8192 && f.border_cells >= 0 && f.border_cells <= 64 &&
+                layer && within(f.cell, 1e-4f, 1e3) && within(f.depth, 1e-3f, 1e4) &&
+                within(e.def.centre_x, -1e9, 1e9) && within(e.def.centre_y, -1e9, 1e9) &&
+                within(e.def.snapshot_interval, 0, 10),
+            "the water's size");
     return e;
 }
 
@@ -72,7 +100,8 @@ event::Body read_body(ByteReader& r) {
     event::Body e;
     e.id = r.u32(), e.map = r.u32(), e.def.scale = r.f32(), e.def.mass = r.f32(), e.def.centre_of_mass = r.vec3();
     e.def.pose = read_pose(r), e.def.twist = read_twist(r);
-    if (!(e.def.scale > 0)) throw Error(FRM_ERROR_CORRUPT, "a body's scale is not positive");
+    require(within(e.def.scale, 1e-3f, 1e3) && within(e.def.mass, 0, 1e9) && within(e.def.centre_of_mass, 1e6),
+            "a body's scale, mass or centre of mass");
     return e;
 }
 

@@ -114,7 +114,7 @@ void Replay::apply(const event::Pressure& e) {
 
 void Replay::apply(const event::Body& e) {
     // A recorder may begin when earlier bodies are gone: numbers grow, but need not follow on.
-    if (e.map >= maps_.size() || e.id < bodies_.size() || e.id > bodies_.size() + 1'000'000)
+    if (e.map >= maps_.size() || e.id < bodies_.size() || e.id > 1'000'000)
         throw Error(FRM_ERROR_CORRUPT, "recording: body %u does not follow", e.id);
     BodyDef def = e.def;
     def.map = maps_[e.map].map;

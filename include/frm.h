@@ -36,9 +36,9 @@
  * except the context's last-error text (frm_context_last_error; functions of any thread write it). Results come
  * through out pointers, which are written only on success.
  *
- * Handles are 64-bit values; 0 is none. A handle that is stale or of another type gives FRM_ERROR_HANDLE, never a
- * crash. Destroying an object destroys what was made in it: a context its maps, worlds, devices, recorders and
- * replays; a world its water and bodies.
+ * Handles are 64-bit values; 0 is none. A handle that is stale (until 16 million more objects have been made) or of
+ * another type gives FRM_ERROR_HANDLE, never a crash. Destroying an object destroys what was made in it: a context its
+ * maps, worlds, devices, recorders and replays; a world its water and bodies.
  *
  * Structs that may grow begin with struct_size. Fill a def with its _def_init, then change what you need; a NULL
  * def pointer means all defaults where the function says so. Set struct_size = sizeof of every struct that the
@@ -48,9 +48,10 @@
  * Threads. Each function carries one tag:
  *   [any]      any thread, at any time, while the object exists
  *   [owner]    one thread at a time per context; may allocate, lock or read files
- *   [realtime] as [owner], and no lock, no allocation, bounded time
+ *   [realtime] as [owner], and no lock, no allocation, bounded time; a refused call may allocate and lock briefly
  *   [offline]  as [owner], and may take seconds
- * Two contexts share nothing that a caller can see.
+ * Two contexts share nothing that a caller can see. Threads that a context with threads > 1 uses are OpenMP's, which
+ * keeps them for the process.
  *
  * The caller's floating-point modes (rounding, flush to zero) do not matter and are not changed.
  */
@@ -97,7 +98,8 @@ enum {
     FRM_ERROR_LIMIT = -9,     /* too many objects, or a size beyond what this version takes */
     FRM_ERROR_DEVICE = -10,   /* a device's driver failed; the text says in which call and with what status */
     FRM_ERROR_END = -11,      /* a recording has no more to give */
-    FRM_ERROR_INTERNAL = -12  /* a defect in this library; please report it with the last-error text */
+    FRM_ERROR_INTERNAL = -12, /* a defect in this library; please report it with the last-error text */
+    FRM_ERROR_DIVERGED = -13  /* the waves or forces left the range of numbers; see frm_world_tick */
 };
 
 /* The name of a status, such as "FRM_ERROR_HANDLE"; "FRM_UNKNOWN" for other values. Static text, never null. [any] */
@@ -185,9 +187,9 @@ FRM_API frm_status FRM_CALL frm_context_def_init(frm_context_def *def, uint64_t 
  * context starts no thread before it needs one. [any] */
 FRM_API frm_status FRM_CALL frm_context_create(const frm_context_def *def, frm_context *context);
 
-/* Destroys the context and everything made in it; recordings still open are closed first. Every handle of it
- * becomes stale. Calling it again is harmless and returns FRM_ERROR_HANDLE. No other call on this context may be
- * running. [owner] */
+/* Destroys the context and everything made in it; recordings still open are closed first, but a write that failed is
+ * only reported by frm_recorder_close. Every handle of it becomes stale. Calling it again is harmless and returns
+ * FRM_ERROR_HANDLE. No other call on this context may be running. [owner] */
 FRM_API frm_status FRM_CALL frm_context_destroy(frm_context context);
 
 /* The text of the last error in this context: what was wrong with which argument. Copies it with a closing zero into
@@ -312,7 +314,10 @@ FRM_API frm_status FRM_CALL frm_world_destroy(frm_world world);
 
 /* Advances the world by dt seconds, 1e-6 to 0.1: buoyancy (Eqs. 1, 4, 5), resistance (Eq. 6), waves (Eqs. 7 to 10),
  * for all bodies in the order of their creation, with the poses and twists last set. The forces are those at the
- * poses given. Error: nothing has changed. [realtime], except that an open recorder writes a block every 64 ticks. */
+ * poses given. FRM_ERROR_DIVERGED: the tick was done, but a force was not a finite number (waves far beyond what
+ * linear theory bears); all forces on that body are zero for this tick, and the water has been made calm. Any other
+ * error: nothing has changed. Waves are linear: heights are not limited by the depth. [realtime], see
+ * frm_recorder_create */
 FRM_API frm_status FRM_CALL frm_world_tick(frm_world world, float dt);
 
 /* Counters. [realtime] */
@@ -376,8 +381,9 @@ FRM_API frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def *de
 /* The field as it is now. FRM_ERROR_CAPACITY if capacity < nx * ny while an array is not null. [realtime] */
 FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *state);
 
-/* The newest snapshot, while another thread ticks: as frm_water_read, at most snapshot_interval old. Any number of
- * readers; never waits for the ticking thread and never makes it wait. [any] */
+/* The newest snapshot, while another thread ticks: as frm_water_read, made every snapshot_interval of the world's time
+ * and when heights are set; older while three or more slow readers keep the other copies busy. Any number of readers;
+ * never waits for the ticking thread and never makes it wait. [any] */
 FRM_API frm_status FRM_CALL frm_water_read_snapshot(frm_water water, frm_water_state *state);
 
 /* Sets heights (m, at cell centres, within +-depth) and lets the water rest. `count` must be nx * ny. [owner] */
@@ -599,7 +605,9 @@ FRM_API frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def *def, uint64_
 /* Records what a world is told and what it answers, from now until closed; the maps are kept inside the recording.
  * The world must not have ticked yet (FRM_ERROR_STATE) and takes one recorder. def may be null. The recording grows
  * as `path`.part and gets its name when it is closed; if the process dies, the .part file is still a recording that
- * lacks at most its last 64 ticks. An existing file is replaced on closing. path is UTF-8. [offline] */
+ * lacks at most its last 64 ticks. An existing file is replaced on closing, an older .part file at once: move it away
+ * first. While a recorder is open, frm_world_tick, frm_body_set_motion and frm_device_exchange may allocate, write a
+ * block every 64 ticks, and hash the world every hash_interval ticks. path is UTF-8. [offline] */
 FRM_API frm_status FRM_CALL frm_recorder_create(frm_world world, const char *path, const frm_recorder_def *def,
                                                 frm_recorder *recorder);
 

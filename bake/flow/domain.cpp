@@ -201,8 +201,7 @@ Walls walls_of(const std::vector<Segment>& segments, const Domain& d) {
 [[noreturn]] void refuse_memory(double bytes, std::uint64_t limit) {
     constexpr double mib = 1 << 20;
     throw BakeError("flow: about " + number(bytes / mib) + " MiB are needed and the limit (memory_limit) is " +
-                    number(static_cast<double>(limit) / mib) +
-                    " MiB; lower the resolution");
+                    number(static_cast<double>(limit) / mib) + " MiB; lower the resolution");
 }
 
 void advise(const Surface& surface, const Vec3d& size, const FlowCase& c, FlowPlan& plan) {
@@ -216,8 +215,9 @@ void advise(const Surface& surface, const Vec3d& size, const FlowCase& c, FlowPl
     }
     if (thickness < 2 * plan.cell) {
         say("the body is about " + number(thickness / plan.cell) +
-            " cells thick (twice its volume over its surface); below 2 the drag of thin parts is 10 to 15 % off: "
-            "resolution " +
+            " cells thick (twice its volume over its surface); below 2 the drag of thin parts is 10 to 15 % off "
+            "face-on "
+            "and up to twice as large edge-on: resolution " +
             number(std::ceil(c.resolution * 2 * plan.cell / std::max(thickness, 1e-9))) + " would give 2");
     }
     if (plan.reynolds_solved < 0.999 * plan.reynolds) {

@@ -17,7 +17,7 @@ struct FlowCase {
     double speed = 0.5;         ///< of the uniform stream, m/s, > 0
     double viscosity = 1.0e-6;  ///< kinematic, m^2/s, > 0
     double density = 1000;      ///< kg/m^3, > 0
-    double resolution = 16;   ///< lattice cells over the reference length, 4 to 512
+    double resolution = 16;     ///< lattice cells over the reference length, 4 to 512
     double reference_length =
         0;                 ///< m; 0: the square root of the projected area (section: the extent across the stream)
     double start_up = 10;  ///< discarded, in reference lengths travelled by the stream

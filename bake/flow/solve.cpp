@@ -64,8 +64,7 @@ public:
           threads_(thread_count(c.threads)),
           started_(Clock::now()) {
         if (wall_.stretches() == 0) {
-            throw BakeError(
-                "flow: the lattice does not meet the body; raise resolution or check the surface's scale");
+            throw BakeError("flow: the lattice does not meet the body; raise resolution or check the surface's scale");
         }
         run_begin_.assign(domain.grid.rows() + 1, 0);
         for (const SolidRun& run : body_.solid) ++run_begin_[run.row + 1];

@@ -80,8 +80,8 @@ void renumber(Regions& regions) {
 
 Regions split_regions(const Surface& surface, std::uint32_t count) {
     if (count < 1 || count > kMostRegions) {
-        throw BakeError("regions: " + std::to_string(count) + " haptic sources asked for; 1 to " + std::to_string(kMostRegions) +
-                        " are possible");
+        throw BakeError("regions: " + std::to_string(count) + " haptic sources asked for; 1 to " +
+                        std::to_string(kMostRegions) + " are possible");
     }
     if (count > surface.triangles.size()) {
         throw BakeError("regions: " + std::to_string(count) + " haptic sources asked for, but the surface has only " +

@@ -46,7 +46,7 @@ PeriodicSeries make_periodic(const std::vector<float>& signal, const PeriodicSpe
     std::vector<kiss_fft_cpx> spectrum(n / 2 + 1), kept(m / 2 + 1, kiss_fft_cpx{0, 0});
     kiss_fftr(make_plan(n, false).get(), period.data(), spectrum.data());
     PeriodicSeries out;
-    out.mean = static_cast<double>(spectrum[0].r) / n;
+    for (const float v : signal) out.mean += static_cast<double>(v) / static_cast<double>(signal.size());
     const std::uint32_t highest = std::min(spec.harmonics, n / 2 - 1);
     for (std::uint32_t k = 1; k <= highest; ++k) {
         const double amplitude =

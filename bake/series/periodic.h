@@ -17,7 +17,7 @@ struct PeriodicSpec {
 };
 
 struct PeriodicSeries {
-    double mean = 0;
+    double mean = 0;                 ///< of the whole signal
     std::vector<float> fluctuation;  ///< [samples], mean zero
 };
 

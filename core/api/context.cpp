@@ -155,7 +155,9 @@ Object* Context::find(std::uint64_t handle, Kind kind) const {
 }
 
 void Context::remove(std::uint64_t handle) {
-    Slot& s = *slot(index_in(handle));
+    Slot* const found = slot(index_in(handle));
+    if (handle == 0 || !found || found->handle.load() != handle) return;  // never had one, or is no more
+    Slot& s = *found;
     s.handle.store(0);
     s.object.store(nullptr);
     for (std::uint32_t i = 0; i < slots_; ++i) {
@@ -244,6 +246,8 @@ const char* FRM_CALL frm_status_name(frm_status status) {
             return "FRM_ERROR_DEVICE";
         case FRM_ERROR_END:
             return "FRM_ERROR_END";
+        case FRM_ERROR_DIVERGED:
+            return "FRM_ERROR_DIVERGED";
         case FRM_ERROR_INTERNAL:
             return "FRM_ERROR_INTERNAL";
         default:
@@ -287,7 +291,7 @@ frm_status FRM_CALL frm_context_create(const frm_context_def* def, frm_context* 
 
 frm_status FRM_CALL frm_context_destroy(frm_context context) {
     return with_context(context, [&](Context& c) {
-        const std::lock_guard<std::mutex> lock(places_lock);
+        // Its place is taken until it is gone, but nobody waits for its files and drivers.
         Place& place = places[context >> 24 & 0xFF];
         place.handle.store(0);
         delete &c;

@@ -78,7 +78,10 @@ frm_status FRM_CALL frm_world_tick(frm_world world, float dt) {
     return with<WorldObject>(world, [&](Context&, WorldObject& object) {
         require_changeable(object);
         require_range(static_cast<double>(dt), 1e-6f, 0.1f, "dt");
-        object.world.tick(dt);
+        if (!object.world.tick(dt))
+            throw Error(FRM_ERROR_DIVERGED,
+                        "a force was not a finite number; the water has been made calm (smaller dt, "
+                        "larger cells or slower motion keep the waves small)");
     });
 }
 

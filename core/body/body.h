@@ -73,7 +73,8 @@ struct Body {
     Forces forces;
     float displaced_volume = 0, wet_area = 0, relative_speed = 0;
     std::uint32_t wet_sources = 0, clipped_triangles = 0;
-    float wet_height = 0;  ///< of the wet surface's centroid above the origin, m
+    bool water_finite = true;  ///< the surface around it is a finite number
+    float wet_height = 0;      ///< of the wet surface's centroid above the origin, m
 
     /// Centre and radius of a sphere around the surface, body frame, scaled.
     Vec3f centre() const;

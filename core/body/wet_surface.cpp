@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/body/body.h"
@@ -46,12 +47,20 @@ private:
 void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid) {
     const Map& map = *body.def.map;
     const float scale = body.def.scale;
-    bool any_wet = surface.everywhere;
+    // A wholly wet body's depths are counted from its own origin's: over a closed surface an even pressure has no force
+    // and no moment, and a metre of depth more would only cost digits.
+    float least = 0, most = 0, sum_of_depths = 0;
     for (std::size_t i = 0; i < map.vertices.size(); ++i) {
         body.local[i] = body.rotation.to_world(map.vertices[i] * scale);
-        body.depth[i] = surface.everywhere ? 1.0f : surface.depth(body.local[i]);
-        any_wet |= body.depth[i] > 0;
+        body.depth[i] = surface.everywhere ? 1.0f : surface.depth_below_level(body.local[i]);
+        least = i == 0 ? body.depth[i] : std::min(least, body.depth[i]);
+        most = i == 0 ? body.depth[i] : std::max(most, body.depth[i]);
+        sum_of_depths += body.depth[i];
     }
+    body.water_finite = std::isfinite(sum_of_depths);
+    const bool all_wet = surface.everywhere || surface.level + least > 0, any_wet = all_wet || surface.level + most > 0;
+    if (!all_wet)
+        for (float& d : body.depth) d += surface.level;
 
     WetSum sum(!surface.everywhere);
     body.clipped_triangles = 0;
@@ -65,7 +74,7 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
         bool partly = false;
         for (std::uint32_t t = map.region_begin[l]; t < map.region_begin[l + 1]; ++t) {
             const auto& index = map.triangles[t];
-            if (!(body.depth[index[0]] > 0 || body.depth[index[1]] > 0 || body.depth[index[2]] > 0)) {
+            if (!all_wet && !(body.depth[index[0]] > 0 || body.depth[index[1]] > 0 || body.depth[index[2]] > 0)) {
                 partly = true;
                 continue;
             }
@@ -73,7 +82,11 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
                                       {body.local[index[1]], body.depth[index[1]]},
                                       {body.local[index[2]], body.depth[index[2]]}};
             sum.begin(vector_area_of(corner[0].at, corner[1].at, corner[2].at), map.triangle_area[t] * scale * scale);
-            const int wet = add_wet_part(corner, std::ref(sum));
+            int wet = 3;
+            if (all_wet)
+                sum(corner[0], corner[1], corner[2], 1.0f);
+            else
+                wet = add_wet_part(corner, std::ref(sum));
             partly |= wet < 3;
             body.clipped_triangles += wet == 1 || wet == 2;
         }

@@ -16,10 +16,17 @@ std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i);
 }
 
+void raise_evenly(Field& water, double volume) {
+    if (volume == 0) return;
+    const auto rise = static_cast<float>(volume / static_cast<double>(water.cells()));
+    for (std::size_t i = 0; i < water.cells(); ++i) water.height()[i] += rise;
+}
+
 }  // namespace
 
 void displace_water(Footprint& footprint, Field& water) {
     if (footprint.first) return;
+    raise_evenly(water, footprint.rest_change());
     Rect changed = footprint.wet();
     changed.include(footprint.wet_before());
     if (changed.empty()) return;
@@ -38,11 +45,13 @@ void displace_water(Footprint& footprint, Field& water) {
 
 void withdraw_body(Footprint& footprint, Field& water) {
     const std::int32_t n = footprint.size();
+    const float share = footprint.deposited_share();
+    raise_evenly(water, -footprint.rest_before() * static_cast<double>(share));
     const Rect r = inside_water(footprint, water, footprint.wet_before());
     for (std::int32_t j = r.j0; j < r.j1; ++j)
         for (std::int32_t i = r.i0; i < r.i1; ++i)
             water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] -=
-                footprint.thickness_before()[at(i, j, n)];
+                footprint.thickness_before()[at(i, j, n)] * share;
 }
 
 void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, const Vec3f& angular, float z) {

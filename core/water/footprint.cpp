@@ -41,6 +41,12 @@ void spline_weights(float offset, float w[3]) {
     w[2] = 0.5f * (0.5f + offset) * (0.5f + offset);
 }
 
+double volume_of(const std::pmr::vector<float>& thickness) {
+    double sum = 0;
+    for (const float t : thickness) sum += static_cast<double>(t);
+    return sum;
+}
+
 }  // namespace
 
 Footprint::Footprint(const FieldDef& water, float radius, std::pmr::memory_resource* memory)
@@ -58,7 +64,7 @@ Footprint::Footprint(const FieldDef& water, float radius, std::pmr::memory_resou
     }
 }
 
-void Footprint::begin(std::int32_t i, std::int32_t j, const GridOrigin& body) {
+void Footprint::begin(std::int32_t i, std::int32_t j, const GridOrigin& body, Field* water) {
     // The window's first cell is a multiple of the alignment in the water, so that the coarse cells never move against
     // the water.
     const auto align = [](std::int32_t a) {
@@ -66,8 +72,9 @@ void Footprint::begin(std::int32_t i, std::int32_t j, const GridOrigin& body) {
     };
     const std::int32_t di = i - size() / 2 - i0_, dj = j - size() / 2 - j0_;
     if (first || di >= alignment || di < 0 || dj >= alignment || dj < 0)
-        shift(align(i - size() / 2) - i0_, align(j - size() / 2) - j0_);
+        shift(align(i - size() / 2) - i0_, align(j - size() / 2) - j0_, water);
     body_ = body;
+    rest_ = 0;
     for (Level& level : level_) {
         if (!level.wet.empty()) std::fill(level.thickness.begin(), level.thickness.end(), 0.0f);
         level.wet = {};
@@ -76,7 +83,8 @@ void Footprint::begin(std::int32_t i, std::int32_t j, const GridOrigin& body) {
     pressed_ = {};
 }
 
-void Footprint::shift(std::int32_t di, std::int32_t dj) {
+void Footprint::shift(std::int32_t di, std::int32_t dj, Field* water) {
+    if (water) leave_behind(di, dj, *water);
     i0_ += di;
     j0_ += dj;
     const std::int32_t n = size();
@@ -92,10 +100,26 @@ void Footprint::shift(std::int32_t di, std::int32_t dj) {
     }
 }
 
+// A body that jumps leaves its window's old place: the water there falls by what the body displaced.
+void Footprint::leave_behind(std::int32_t di, std::int32_t dj, Field& water) const {
+    const std::int32_t n = size(), nx = water.def().nx;
+    const Rect wet = wet_before_.moved(i0_, j0_).clipped(nx, water.def().ny);
+    for (std::int32_t j = wet.j0; j < wet.j1; ++j) {
+        for (std::int32_t i = wet.i0; i < wet.i1; ++i) {
+            const std::int32_t wi = i - i0_, wj = j - j0_;
+            if (wi >= di && wi < n + di && wj >= dj && wj < n + dj) continue;  // stays in the window
+            const std::size_t from =
+                static_cast<std::size_t>(wj) * static_cast<std::size_t>(n) + static_cast<std::size_t>(wi);
+            water.height()[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i)] -=
+                thickness_before_[from];
+        }
+    }
+}
+
 GridOrigin Footprint::body_in_window() const { return {body_.i - i0_, body_.j - j0_, body_.x, body_.y}; }
 
-void Footprint::add(int level, float x, float y, float thickness) {
-    Level& grid = level_[static_cast<std::size_t>(level)];
+void Footprint::add(float x, float y, float thickness) {
+    Level& grid = level_[0];
     const std::int32_t n = grid.size;
     if (!(x >= 1.0f && y >= 1.0f && x < static_cast<float>(n - 1) && y < static_cast<float>(n - 1))) return;
     const auto i = static_cast<std::int32_t>(x), j = static_cast<std::int32_t>(y);
@@ -110,7 +134,7 @@ void Footprint::add(int level, float x, float y, float thickness) {
     grid.wet.include({i - 1, j - 1, i + 2, j + 2});
 }
 
-void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_up, bool spread) {
+void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_up) {
     const float scale = 1.0f / cell_;
     float x[3], y[3];
     const float base_x = static_cast<float>(body_.i - i0_) + body_.x,
@@ -119,72 +143,89 @@ void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_
         x[k] = base_x + corner[k].x * scale;
         y[k] = base_y + corner[k].y * scale;
     }
-    // The level whose spline is as wide as the depth asks for, in part and the next one in part; what would reach
-    // beyond the coarsest is dropped: it is spread so thin.
-    int level = 0;
-    float next = 0, keep = 1;
-    if (spread) {
-        const float width =
-            (depth[0] + depth[1] + depth[2]) * (1.0f / 3) * scale * (widths_per_depth / width_of_spline);
-        while (level < levels - 1 && width >= static_cast<float>(2 << level)) ++level;
-        const float cells = static_cast<float>(1 << level);
-        if (level == levels - 1) {
-            if (width > cells) keep = (cells / width) * (cells / width);
-        } else if (width > cells) {
-            next = width / cells - 1;
-        }
-    }
-
     const float extent = std::max(std::max({x[0], x[1], x[2]}) - std::min({x[0], x[1], x[2]}),
-                                  std::max({y[0], y[1], y[2]}) - std::min({y[0], y[1], y[2]})) /
-                         static_cast<float>(1 << level);
+                                  std::max({y[0], y[1], y[2]}) - std::min({y[0], y[1], y[2]}));
     // Points no further apart than a cell: quadratic splines on such a grid add up evenly, so that front and back of a
     // slanted sheet cancel in every column.
-    const std::int32_t parts = std::clamp(static_cast<std::int32_t>(std::ceil(extent)), 1, 32);
+    const std::int32_t parts = std::clamp(static_cast<std::int32_t>(std::ceil(std::min(extent, 32.0f))), 1, 32);
     const float third = 1.0f / (3.0f * static_cast<float>(parts));
-    const float share = -keep * area_up / (static_cast<float>(parts * parts) * cell_ * cell_);
-    const float fine = 1.0f / static_cast<float>(1 << level), coarse = 0.5f * fine;
+    const float share = -area_up / (static_cast<float>(parts * parts) * cell_ * cell_);
     for (std::int32_t a = 0; a < parts; ++a) {
         for (std::int32_t b = 0; b < 2 * (parts - a) - 1; ++b) {
-            // Centres of the parts: upright ones at (3a + 1, 3b' + 1), inverted ones at (3a + 2, 3b' + 2), in thirds
-            // of a part.
+            // Centres of the parts: upright ones at (3a + 1, 3b' + 1), inverted ones at (3a + 2, 3b' + 2), in thirds.
             const std::int32_t odd = b & 1, column = b >> 1;
             const float s = static_cast<float>(3 * a + 1 + odd) * third;
             const float t = static_cast<float>(3 * column + 1 + odd) * third;
             const float r = 1.0f - s - t;
-            const float px = r * x[0] + s * x[1] + t * x[2], py = r * y[0] + s * y[1] + t * y[2];
-            const float amount = share * (r * depth[0] + s * depth[1] + t * depth[2]);
-            add(level, px * fine, py * fine, amount * (1 - next) * fine * fine);
-            if (next > 0) add(level + 1, px * coarse, py * coarse, amount * next * coarse * coarse);
+            add(r * x[0] + s * x[1] + t * x[2], r * y[0] + s * y[1] + t * y[2],
+                share * (r * depth[0] + s * depth[1] + t * depth[2]));
         }
     }
 }
 
-// Coarse to fine: a quadratic spline on cells of twice the size, in terms of the finer ones (weights 3/4 and 1/4;
-// Chaikin 1974).
-void Footprint::gather() {
-    for (std::size_t k = levels - 1; k > 0; --k) {
-        const Level& from = level_[k];
-        if (from.wet.empty()) continue;
-        Level& to = level_[k - 1];
-        const Rect r = Rect{2 * from.wet.i0 - 1, 2 * from.wet.j0 - 1, 2 * from.wet.i1 + 1, 2 * from.wet.j1 + 1}.clipped(
-            to.size, to.size);
-        const auto value = [&](std::int32_t i, std::int32_t j) {
-            if (i < 0 || j < 0 || i >= from.size || j >= from.size) return 0.0f;
-            return from.thickness[static_cast<std::size_t>(j) * static_cast<std::size_t>(from.size) +
-                                  static_cast<std::size_t>(i)];
-        };
-        for (std::int32_t j = r.j0; j < r.j1; ++j) {
-            const std::int32_t cj = j >> 1, nj = j & 1 ? cj + 1 : cj - 1;
-            float* row = to.thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(to.size);
-            for (std::int32_t i = r.i0; i < r.i1; ++i) {
-                const std::int32_t ci = i >> 1, ni = i & 1 ? ci + 1 : ci - 1;
-                row[i] += 0.75f * (0.75f * value(ci, cj) + 0.25f * value(ni, cj)) +
-                          0.25f * (0.75f * value(ci, nj) + 0.25f * value(ni, nj));
-            }
-        }
-        to.wet.include(r);
+// Cells of twice the size hold the mean of four.
+void Footprint::coarsen(std::size_t to) {
+    const Level& from = level_[to - 1];
+    Level& coarse = level_[to];
+    const std::int32_t n = from.size;
+    coarse.wet = Rect{from.wet.i0 >> 1, from.wet.j0 >> 1, (from.wet.i1 + 1) >> 1, (from.wet.j1 + 1) >> 1};
+    for (std::int32_t j = coarse.wet.j0; j < coarse.wet.j1; ++j) {
+        const float* low = from.thickness.data() + static_cast<std::size_t>(2 * j) * static_cast<std::size_t>(n);
+        const float* high = low + n;
+        float* row = coarse.thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(coarse.size);
+        for (std::int32_t i = coarse.wet.i0; i < coarse.wet.i1; ++i)
+            row[i] = 0.25f * ((low[2 * i] + low[2 * i + 1]) + (high[2 * i] + high[2 * i + 1]));
     }
+}
+
+// A quadratic spline on cells of twice the size, in terms of the finer ones (weights 3/4 and 1/4; Chaikin 1974), replaces the
+// finer level's thickness; of that, 1 - share stays.
+void Footprint::refine(std::size_t from_level, float share) {
+    const Level& from = level_[from_level];
+    Level& to = level_[from_level - 1];
+    const Rect r = Rect{2 * from.wet.i0 - 1, 2 * from.wet.j0 - 1, 2 * from.wet.i1 + 1, 2 * from.wet.j1 + 1}.clipped(
+        to.size, to.size);
+    const auto value = [&](std::int32_t i, std::int32_t j) {
+        if (i < 0 || j < 0 || i >= from.size || j >= from.size) return 0.0f;
+        return from
+            .thickness[static_cast<std::size_t>(j) * static_cast<std::size_t>(from.size) + static_cast<std::size_t>(i)];
+    };
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        const std::int32_t cj = j >> 1, nj = j & 1 ? cj + 1 : cj - 1;
+        float* row = to.thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(to.size);
+        for (std::int32_t i = r.i0; i < r.i1; ++i) {
+            const std::int32_t ci = i >> 1, ni = i & 1 ? ci + 1 : ci - 1;
+            const float smooth = 0.75f * (0.75f * value(ci, cj) + 0.25f * value(ni, cj)) +
+                                 0.25f * (0.75f * value(ci, nj) + 0.25f * value(ni, nj));
+            row[i] = (1 - share) * row[i] + share * smooth;
+        }
+    }
+    to.wet.include(r);
+}
+
+void Footprint::spread(float cover) {
+    const float width =
+        cover / cell_ * (widths_per_depth / width_of_spline);  // in cells of the level whose spline is as wide
+    if (!(width > 1.0f) || level_[0].wet.empty()) return;
+    std::size_t level = 0;  // the one below the width; the next has the rest
+    while (level + 2 < levels && width >= static_cast<float>(2 << level)) ++level;
+    const auto cells = static_cast<float>(1 << level);
+    const float widest = 2 * cells, next = std::min(1.0f, width / cells - 1);
+    const double before = volume_of(level_[0].thickness);
+    for (std::size_t k = 1; k <= level + 1; ++k) coarsen(k);
+    refine(level + 1, next);
+    for (std::size_t k = level; k > 0; --k) refine(k, 1.0f);
+    if (!(width > widest)) return;
+
+    // Deeper than the widest spline reaches, the surface above moves less by the square of the width, as K(0) does; the rest
+    // is spread so wide that it is taken as even over all of the water.
+    const float keep = (widest / width) * (widest / width);
+    for (float& t : level_[0].thickness) t *= keep;
+    rest_ = (1 - static_cast<double>(keep)) * before;
+}
+
+float Footprint::deposited_share() const {
+    return volume_ > 0 ? static_cast<float>(std::clamp(1 - first_volume_ / volume_, 0.0, 1.0)) : 0.0f;
 }
 
 void Footprint::splat_pressure(const Vec3f& at, float pressure, float area, float depth) {
@@ -223,6 +264,9 @@ void Footprint::splat_pressure(const Vec3f& at, float pressure, float area, floa
 
 void Footprint::end() {
     active_ = active();
+    volume_ = volume_of(level_[0].thickness) + rest_;
+    if (first) first_volume_ = volume_;
+    rest_before_ = rest_;
     std::swap(level_[0].thickness, thickness_before_);
     std::swap(level_[0].wet, wet_before_);
     first = false;

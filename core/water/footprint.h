@@ -19,15 +19,16 @@ public:
     Footprint(const FieldDef& water, float radius, std::pmr::memory_resource* memory);
 
     /// Starts a tick: the window follows the body's centre, which is in cell (i, j) of the water.
-    void begin(std::int32_t i, std::int32_t j, const GridOrigin& body);
+    /// `water` is where the thickness goes; null where it does not (the paper's rule).
+    void begin(std::int32_t i, std::int32_t j, const GridOrigin& body, Field* water);
 
     /// A wet piece of the surface: corners in the body's local frame, their depths, and its area as seen from above
     /// (n_z times its area). Its share of the displaced volume, minus that area times the mean depth, goes into the
-    /// columns around it; over a closed surface the shares add up to the displaced volume. With `spread` the columns
-    /// reach the wider the deeper the piece is.
-    void deposit(const Vec3f corner[3], const float depth[3], float area_up, bool spread);
-    /// After the last deposit: adds what was spread wide to thickness().
-    void gather();
+    /// columns around it; over a closed surface the shares add up to the body's thickness.
+    void deposit(const Vec3f corner[3], const float depth[3], float area_up);
+    /// After the last deposit: what has `cover` metres of water above it moves the surface the wider the more there is.
+    /// Keeps the volume.
+    void spread(float cover);
 
     /// Pressure p on a horizontal area around a point: a Gaussian of that area's width (section 6.3), wider with
     /// depth, whose sum is p * area.
@@ -54,6 +55,11 @@ public:
     void hash(StateHash& hash) const;
 
     bool first = true;  ///< no tick yet: a body that is put into the water makes no splash
+    /// How much more of the volume is even over all of the water than in the tick before, in cells times metres.
+    double rest_change() const { return rest_ - rest_before_; }
+    double rest_before() const { return rest_before_; }
+    /// The part of the thickness that went into the water after the body did: what it takes along when it is taken out.
+    float deposited_share() const;
 
 private:
     /// One grid of thickness: level k has cells of 2^k cells of the water.
@@ -64,15 +70,21 @@ private:
     };
     static constexpr int levels = 4;
 
-    void shift(std::int32_t di, std::int32_t dj);
-    void add(int level, float x, float y, float thickness);
+    void shift(std::int32_t di, std::int32_t dj, Field* water);
+    void leave_behind(std::int32_t di, std::int32_t dj, Field& water) const;
+    void add(float x, float y, float thickness);
+    void coarsen(std::size_t to);
+    void refine(std::size_t from, float share);
 
     float cell_;
     std::int32_t i0_ = 0, j0_ = 0;
     GridOrigin body_;
     Rect wet_before_, pressed_;
     bool active_ = false;
-    std::array<Level, levels> level_;  ///< level 0 is thickness()
+    double rest_ = 0, rest_before_ = 0;  ///< volume that is even over all of the water, in cells times metres
+    double volume_ = 0;                  ///< of all the thickness before
+    double first_volume_ = 0;            ///< of the first tick, which was not put into the water
+    std::array<Level, levels> level_;    ///< level 0 is thickness()
     std::pmr::vector<float> thickness_before_, pressure_;
 };
 

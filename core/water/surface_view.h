@@ -13,9 +13,10 @@ struct SurfaceView {
     GridOrigin origin;             ///< the body's origin in the field
     float cells_per_metre = 0;
 
-    float depth(const Vec3f& p) const {
+    /// Depth of a point less `level`: small numbers also for a body that is deep.
+    float depth_below_level(const Vec3f& p) const {
         const float wave = field ? field->height_at(origin, p.x * cells_per_metre, p.y * cells_per_metre) : 0.0f;
-        return level + wave - p.z;
+        return wave - p.z;
     }
     /// Horizontal velocity of the water; u_z is taken as zero (section 6.3).
     Vec3f velocity(const Vec3f& p) const {

@@ -12,6 +12,7 @@ Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
 void Water::set_height(const float* height) {
     field.calm();
     std::memcpy(field.height(), height, field.cells() * sizeof(float));
+    next_snapshot_ = 0;
 }
 
 void Water::set_pressure(const float* pressure) {

@@ -7,14 +7,35 @@
 #include "core/water/coupling.h"
 
 namespace frm {
+namespace {
+
+bool finite(const Forces& f) {
+    const Vec3f sum = f.total.force + f.total.torque;  // of parts: one that is not finite shows
+    return std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z);
+}
+
+void forget_forces(Body& body) {
+    body.forces = {};
+    body.displaced_volume = body.wet_area = body.relative_speed = 0;
+    for (SourceState& source : body.sources) source = {};
+}
+
+}  // namespace
 
 World::World(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resource* memory)
     : def_(def), threads_(threads), memory_(memory), bodies_(memory) {}
 
 Water& World::create_water(const WaterDef& def) {
     water_ = std::allocate_shared<Water>(std::pmr::polymorphic_allocator<Water>(memory_), def, memory_);
-    for (const auto& body : bodies_) give_footprint(*body);
-    if (observer_) observer_->water_created(*this);
+    try {
+        for (const auto& body : bodies_) give_footprint(*body);
+        if (observer_) observer_->water_created(*this);
+        water_->offer_snapshot(ticks_, time_);
+    } catch (...) {
+        for (const auto& body : bodies_) body->footprint.reset();
+        water_.reset();
+        throw;
+    }
     return *water_;
 }
 
@@ -26,6 +47,7 @@ void World::destroy_water() {
 
 void World::set_height(const float* height) {
     water_->set_height(height);
+    water_->offer_snapshot(ticks_, time_);
     if (observer_) observer_->height_set(*this, height, water_->field.cells());
 }
 
@@ -38,8 +60,13 @@ Body& World::create_body(const BodyDef& def, std::uint32_t id) {
     auto body = std::allocate_shared<Body>(std::pmr::polymorphic_allocator<Body>(memory_), def, id, memory_);
     if (water_) give_footprint(*body);
     bodies_.push_back(std::move(body));
+    try {
+        if (observer_) observer_->body_created(*this, *bodies_.back());
+    } catch (...) {
+        bodies_.pop_back();
+        throw;
+    }
     next_body_ = id + 1;
-    if (observer_) observer_->body_created(*this, *bodies_.back());
     return *bodies_.back();
 }
 
@@ -71,10 +98,13 @@ SurfaceView World::view_from(const Body& body) const {
     return view;
 }
 
-void World::tick(float dt) {
+bool World::tick(float dt) {
     std::uint32_t substeps = 0;
     if (water_) {
-        const float needed = std::ceil(dt / Field::stable_step(water_->def().field, def_.fluid.gravity));
+        // Where the velocity is forced in each step, a step leaves u = U - dt g dh/dx, and heights diffuse with g d dt:
+        // stable for a Courant number up to 1/2 only, and not 1 / sqrt(2).
+        const float courant = def_.model & model_displacement ? 1.0f : 0.70710678f;
+        const float needed = std::ceil(dt / (courant * Field::stable_step(water_->def().field, def_.fluid.gravity)));
         if (!(needed <= static_cast<float>(max_substeps)))
             throw Error(FRM_ERROR_LIMIT,
                         "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
@@ -82,6 +112,7 @@ void World::tick(float dt) {
         substeps = std::max(1u, static_cast<std::uint32_t>(needed));
     }
 
+    bool diverged = false;
     const bool own_waves = (def_.model & model_own_waves) != 0, spread = (def_.model & model_displacement) != 0;
     for (const auto& body : bodies_) {
         const SurfaceView view = view_from(*body);
@@ -89,34 +120,45 @@ void World::tick(float dt) {
             const Vec3f centre = body->rotation.to_world(body->centre());
             const GridOrigin at = water_->origin_at(body->def.pose.position.x + static_cast<double>(centre.x),
                                                     body->def.pose.position.y + static_cast<double>(centre.y));
-            body->footprint->begin(at.i, at.j, view.origin);
+            body->footprint->begin(at.i, at.j, view.origin, spread ? &water_->field : nullptr);
         }
         measure_wet_surface(*body, view, def_.fluid);
         if (body->footprint) lay_displacement(*body, view.level, spread);
         look_up_resistance(*body, view, def_.fluid, dt, own_waves, spread);
         sum_forces(*body, def_.fluid);
+        if (!body->water_finite || !finite(body->forces)) {
+            forget_forces(*body);
+            diverged = true;
+        }
     }
     if (water_) move_water(dt, substeps);
+    if (diverged && water_) calm_water();
 
     ++ticks_;
     time_ += static_cast<double>(dt);
     substeps_ = substeps;
     if (water_) water_->offer_snapshot(ticks_, time_);
     if (observer_) observer_->ticked(*this, dt);
+    return !diverged;
+}
+
+void World::calm_water() {
+    water_->field.calm();
+    for (const auto& body : bodies_) body->footprint->own.calm();
 }
 
 void World::move_water(float dt, std::uint32_t substeps) {
     Field& field = water_->field;
     const float step = dt / static_cast<float>(substeps), push = step / def_.fluid.density;
     const Rect all{0, 0, field.def().nx, field.def().ny};
-    for (const auto& body : bodies_) {
-        Footprint& footprint = *body->footprint;
-        if (def_.model & model_displacement)
-            displace_water(footprint, field);
-        else
-            force_velocity(footprint, field, body->def.twist.linear, body->def.twist.angular, body->wet_height);
-    }
+    const bool displaces = (def_.model & model_displacement) != 0;
+    if (displaces)
+        for (const auto& body : bodies_) displace_water(*body->footprint, field);
     for (std::uint32_t n = 0; n < substeps; ++n) {
+        if (!displaces)
+            for (const auto& body : bodies_)
+                force_velocity(*body->footprint, field, body->def.twist.linear, body->def.twist.angular,
+                               body->wet_height);
         if (water_->pressure()) field.push(water_->pressure(), all, push);
         for (const auto& body : bodies_) push_water(*body->footprint, field, push);
         field.step(step, def_.fluid.gravity, threads_);

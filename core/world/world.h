@@ -60,8 +60,9 @@ public:
     const std::pmr::vector<std::shared_ptr<Body>>& bodies() const { return bodies_; }
     void set_motion(Body& body, const Pose& pose, const Twist& twist);
 
-    /// Throws Error (FRM_ERROR_LIMIT), with nothing changed, if the waves would need more than max_substeps steps.
-    void tick(float dt);
+    /// Throws Error (FRM_ERROR_LIMIT), with nothing changed, if the waves would need more than max_substeps steps. False
+    /// if a force was not finite: that body's forces are zero then, and the water is calm.
+    bool tick(float dt);
     static constexpr std::uint32_t max_substeps = 1024;
 
     std::uint64_t hash() const;
@@ -72,6 +73,7 @@ private:
     SurfaceView view_from(const Body& body) const;
     void give_footprint(Body& body);
     void move_water(float dt, std::uint32_t substeps);
+    void calm_water();
 
     WorldDef def_;
     std::uint32_t threads_;

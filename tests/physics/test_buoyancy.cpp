@@ -135,6 +135,15 @@ TEST_CASE("buoyancy is the same 10 km away", "[buoyancy]") {
     CHECK(length(near.buoyancy.force - far.buoyancy.force) < 1e-5f * length(near.buoyancy.force));
 }
 
+TEST_CASE("a body far below the surface is as buoyant as one just below", "[buoyancy]") {
+    const auto map = test::map_of(test::fine_box({0.3, 0.2, 0.5}, 0.2));
+    for (const double z : {-1.0, -1e3, -1e6, -1e9}) {
+        const Forces f = forces_of(body_of(map, {0, 0, z}, test::turned({1, 1, 0}, 0.4)));
+        CHECK(static_cast<double>(f.buoyancy.force.z) == Approx(rho_g * 0.03).epsilon(1e-5));
+        CHECK(std::fabs(f.buoyancy.force.x) < 1e-3f);
+    }
+}
+
 TEST_CASE("the wet ratio is the clipped area, without steps", "[buoyancy]") {
     const auto map = test::map_of(test::fine_box({0.2, 0.2, 0.4}, 0.1), 24);
     World world = test::world_of();

@@ -86,6 +86,7 @@ class Status(IntEnum):
     ERROR_DEVICE = -10
     ERROR_END = -11
     ERROR_INTERNAL = -12
+    ERROR_DIVERGED = -13
 
 
 # ---- Handles and plain values ------------------------------------------------------------------------------
