@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "core/body/body.h"
 #include "core/body/clip.h"
 
@@ -21,13 +19,10 @@ void lay_displacement(Body& body, float level, bool spread) {
         add_wet_part(corner, [&](const Corner& a, const Corner& b, const Corner& c, float share) {
             const Vec3f at[3] = {a.at, b.at, c.at};
             const float depth[3] = {a.depth, b.depth, c.depth};
-            footprint.deposit(at, depth, share * area_up);
+            footprint.deposit(at, depth, share * area_up, spread);
         });
     }
-    if (!spread) return;
-    float cover = level - body.local[0].z;
-    for (const Vec3f& v : body.local) cover = std::min(cover, level - v.z);
-    footprint.spread(cover);
+    footprint.gather();
 }
 
 }  // namespace frm

@@ -21,6 +21,7 @@ constexpr float widths_per_depth = 1.47f;
 /// The spline of a level is as wide as a Gaussian of 0.58 of its cells: 0.5 of its own, and 1/4, 1/16, ... from each
 /// gathering.
 constexpr float width_of_spline = 0.58f;
+constexpr int last_level = 3;
 
 FieldDef window_of(const FieldDef& water, float radius) {
     FieldDef def = water;
@@ -39,6 +40,35 @@ void spline_weights(float offset, float w[3]) {
     w[0] = 0.5f * (0.5f - offset) * (0.5f - offset);
     w[1] = 0.75f - offset * offset;
     w[2] = 0.5f * (0.5f + offset) * (0.5f + offset);
+}
+
+/// Of a column from the surface down to where the width is w: how much of it (in width) a level takes, and how much is
+/// left for all of the water.
+struct Slices {
+    float laid = 0, left = 0;
+};
+
+/// A level of cells of width c takes slices in full at w = c, less towards c / 2 and 2 c, in a straight line; the first
+/// all that is narrower. The last takes c^2 / w^2 of what is wider, as K(0) goes down; the rest is spread so wide that
+/// it counts as even. This is the integral of that from 0 to w.
+Slices slices_above(int level, float w) {
+    const auto c = static_cast<float>(1 << level);
+    Slices s;
+    if (level == 0) {
+        s.laid = std::min(w, c);
+    } else {
+        const float rise = std::clamp(w - 0.5f * c, 0.0f, 0.5f * c);
+        s.laid = rise * rise / c;
+    }
+    if (level < last_level) {
+        const float fall = std::clamp(w - c, 0.0f, c);
+        s.laid += fall - fall * fall / (2 * c);
+    } else if (w > c) {
+        const float narrow = c * c * (1 / c - 1 / w);
+        s.laid += narrow;
+        s.left = (w - c) - narrow;
+    }
+    return s;
 }
 
 double volume_of(const std::pmr::vector<float>& thickness) {
@@ -118,8 +148,7 @@ void Footprint::leave_behind(std::int32_t di, std::int32_t dj, Field& water) con
 
 GridOrigin Footprint::body_in_window() const { return {body_.i - i0_, body_.j - j0_, body_.x, body_.y}; }
 
-void Footprint::add(float x, float y, float thickness) {
-    Level& grid = level_[0];
+void Footprint::add(Level& grid, float x, float y, float thickness) {
     const std::int32_t n = grid.size;
     if (!(x >= 1.0f && y >= 1.0f && x < static_cast<float>(n - 1) && y < static_cast<float>(n - 1))) return;
     const auto i = static_cast<std::int32_t>(x), j = static_cast<std::int32_t>(y);
@@ -134,8 +163,28 @@ void Footprint::add(float x, float y, float thickness) {
     grid.wet.include({i - 1, j - 1, i + 2, j + 2});
 }
 
-void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_up) {
+// Two by two cells: enough where gather() smooths what follows, and a third of the time of the spline.
+void Footprint::add_coarse(Level& grid, float x, float y, float thickness) {
+    const std::int32_t n = grid.size;
+    x -= 0.5f, y -= 0.5f;
+    if (!(x >= 0 && y >= 0 && x < static_cast<float>(n - 1) && y < static_cast<float>(n - 1))) return;
+    const auto i = static_cast<std::int32_t>(x), j = static_cast<std::int32_t>(y);
+    const float s = x - static_cast<float>(i), high = thickness * (y - static_cast<float>(j)), low = thickness - high;
+    float* row = grid.thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + i;
+    row[0] += low - s * low;
+    row[1] += s * low;
+    row[n] += high - s * high;
+    row[n + 1] += s * high;
+    grid.wet.include({i, j, i + 2, j + 2});
+}
+
+// A face at depth d ends (or, facing up, begins) a column of the body that reaches to the surface. Each slice of that
+// column is laid on the level whose spline is as wide as the slice's own depth asks for, so that between the bottom
+// and the top of the body each slice counts once, with its own width.
+void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_up, bool spread) {
     const float scale = 1.0f / cell_;
+    const float to_width =
+        scale * (widths_per_depth / width_of_spline);  // depth to the width that it asks for, in cells
     float x[3], y[3];
     const float base_x = static_cast<float>(body_.i - i0_) + body_.x,
                 base_y = static_cast<float>(body_.j - j0_) + body_.y;
@@ -145,83 +194,65 @@ void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_
     }
     const float extent = std::max(std::max({x[0], x[1], x[2]}) - std::min({x[0], x[1], x[2]}),
                                   std::max({y[0], y[1], y[2]}) - std::min({y[0], y[1], y[2]}));
-    // Points no further apart than a cell: quadratic splines on such a grid add up evenly, so that front and back of a
-    // slanted sheet cancel in every column.
-    const std::int32_t parts = std::clamp(static_cast<std::int32_t>(std::ceil(std::min(extent, 32.0f))), 1, 32);
-    const float third = 1.0f / (3.0f * static_cast<float>(parts));
-    const float share = -area_up / (static_cast<float>(parts * parts) * cell_ * cell_);
-    for (std::int32_t a = 0; a < parts; ++a) {
-        for (std::int32_t b = 0; b < 2 * (parts - a) - 1; ++b) {
-            // Centres of the parts: upright ones at (3a + 1, 3b' + 1), inverted ones at (3a + 2, 3b' + 2), in thirds.
-            const std::int32_t odd = b & 1, column = b >> 1;
-            const float s = static_cast<float>(3 * a + 1 + odd) * third;
-            const float t = static_cast<float>(3 * column + 1 + odd) * third;
-            const float r = 1.0f - s - t;
-            add(r * x[0] + s * x[1] + t * x[2], r * y[0] + s * y[1] + t * y[2],
-                share * (r * depth[0] + s * depth[1] + t * depth[2]));
+    const float widest = std::max({depth[0], depth[1], depth[2]}) * to_width;
+    for (int level = 0; level < (spread ? levels : 1); ++level) {
+        const auto cells = static_cast<float>(1 << level);
+        if (level > 0 && widest <= 0.5f * cells) break;
+        // Points no further apart than a cell: quadratic splines on such a grid add up evenly, so that front and back
+        // of a slanted sheet cancel in every column.
+        const std::int32_t parts =
+            std::clamp(static_cast<std::int32_t>(std::ceil(std::min(extent / cells, 32.0f))), 1, 32);
+        const float third = 1.0f / (3.0f * static_cast<float>(parts)), inverse = 1.0f / cells;
+        const float area = -area_up / (static_cast<float>(parts * parts) * cell_ * cell_);
+        for (std::int32_t a = 0; a < parts; ++a) {
+            for (std::int32_t b = 0; b < 2 * (parts - a) - 1; ++b) {
+                // Centres of the parts: upright ones at (3a + 1, 3b' + 1), inverted ones at (3a + 2, 3b' + 2), in
+                // thirds.
+                const std::int32_t odd = b & 1, column = b >> 1;
+                const float s = static_cast<float>(3 * a + 1 + odd) * third;
+                const float t = static_cast<float>(3 * column + 1 + odd) * third;
+                const float r = 1.0f - s - t;
+                const float d = r * depth[0] + s * depth[1] + t * depth[2];
+                float thickness = d;
+                if (spread) {
+                    const Slices slices = slices_above(level, d * to_width);
+                    thickness = slices.laid / to_width;
+                    rest_ += static_cast<double>(area * slices.left / to_width);
+                }
+                const float px = (r * x[0] + s * x[1] + t * x[2]) * inverse;
+                const float py = (r * y[0] + s * y[1] + t * y[2]) * inverse;
+                (level == 0 ? add : add_coarse)(level_[static_cast<std::size_t>(level)], px, py,
+                                                area * thickness * inverse * inverse);
+            }
         }
     }
 }
 
-// Cells of twice the size hold the mean of four.
-void Footprint::coarsen(std::size_t to) {
-    const Level& from = level_[to - 1];
-    Level& coarse = level_[to];
-    const std::int32_t n = from.size;
-    coarse.wet = Rect{from.wet.i0 >> 1, from.wet.j0 >> 1, (from.wet.i1 + 1) >> 1, (from.wet.j1 + 1) >> 1};
-    for (std::int32_t j = coarse.wet.j0; j < coarse.wet.j1; ++j) {
-        const float* low = from.thickness.data() + static_cast<std::size_t>(2 * j) * static_cast<std::size_t>(n);
-        const float* high = low + n;
-        float* row = coarse.thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(coarse.size);
-        for (std::int32_t i = coarse.wet.i0; i < coarse.wet.i1; ++i)
-            row[i] = 0.25f * ((low[2 * i] + low[2 * i + 1]) + (high[2 * i] + high[2 * i + 1]));
-    }
-}
-
-// A quadratic spline on cells of twice the size, in terms of the finer ones (weights 3/4 and 1/4; Chaikin 1974), replaces the
-// finer level's thickness; of that, 1 - share stays.
-void Footprint::refine(std::size_t from_level, float share) {
-    const Level& from = level_[from_level];
-    Level& to = level_[from_level - 1];
-    const Rect r = Rect{2 * from.wet.i0 - 1, 2 * from.wet.j0 - 1, 2 * from.wet.i1 + 1, 2 * from.wet.j1 + 1}.clipped(
-        to.size, to.size);
-    const auto value = [&](std::int32_t i, std::int32_t j) {
-        if (i < 0 || j < 0 || i >= from.size || j >= from.size) return 0.0f;
-        return from
-            .thickness[static_cast<std::size_t>(j) * static_cast<std::size_t>(from.size) + static_cast<std::size_t>(i)];
-    };
-    for (std::int32_t j = r.j0; j < r.j1; ++j) {
-        const std::int32_t cj = j >> 1, nj = j & 1 ? cj + 1 : cj - 1;
-        float* row = to.thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(to.size);
-        for (std::int32_t i = r.i0; i < r.i1; ++i) {
-            const std::int32_t ci = i >> 1, ni = i & 1 ? ci + 1 : ci - 1;
-            const float smooth = 0.75f * (0.75f * value(ci, cj) + 0.25f * value(ni, cj)) +
-                                 0.25f * (0.75f * value(ci, nj) + 0.25f * value(ni, nj));
-            row[i] = (1 - share) * row[i] + share * smooth;
+// Coarse to fine: a quadratic spline on cells of twice the size, in terms of the finer ones (weights 3/4 and 1/4;
+// Chaikin 1974).
+void Footprint::gather() {
+    for (std::size_t k = levels - 1; k > 0; --k) {
+        const Level& from = level_[k];
+        if (from.wet.empty()) continue;
+        Level& to = level_[k - 1];
+        const Rect r = Rect{2 * from.wet.i0 - 1, 2 * from.wet.j0 - 1, 2 * from.wet.i1 + 1, 2 * from.wet.j1 + 1}.clipped(
+            to.size, to.size);
+        const auto value = [&](std::int32_t i, std::int32_t j) {
+            if (i < 0 || j < 0 || i >= from.size || j >= from.size) return 0.0f;
+            return from.thickness[static_cast<std::size_t>(j) * static_cast<std::size_t>(from.size) +
+                                  static_cast<std::size_t>(i)];
+        };
+        for (std::int32_t j = r.j0; j < r.j1; ++j) {
+            const std::int32_t cj = j >> 1, nj = j & 1 ? cj + 1 : cj - 1;
+            float* row = to.thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(to.size);
+            for (std::int32_t i = r.i0; i < r.i1; ++i) {
+                const std::int32_t ci = i >> 1, ni = i & 1 ? ci + 1 : ci - 1;
+                row[i] += 0.75f * (0.75f * value(ci, cj) + 0.25f * value(ni, cj)) +
+                          0.25f * (0.75f * value(ci, nj) + 0.25f * value(ni, nj));
+            }
         }
+        to.wet.include(r);
     }
-    to.wet.include(r);
-}
-
-void Footprint::spread(float cover) {
-    const float width =
-        cover / cell_ * (widths_per_depth / width_of_spline);  // in cells of the level whose spline is as wide
-    if (!(width > 1.0f) || level_[0].wet.empty()) return;
-    std::size_t level = 0;  // the one below the width; the next has the rest
-    while (level + 2 < levels && width >= static_cast<float>(2 << level)) ++level;
-    const auto cells = static_cast<float>(1 << level);
-    const float widest = 2 * cells, next = std::min(1.0f, width / cells - 1);
-    const double before = volume_of(level_[0].thickness);
-    for (std::size_t k = 1; k <= level + 1; ++k) coarsen(k);
-    refine(level + 1, next);
-    for (std::size_t k = level; k > 0; --k) refine(k, 1.0f);
-    if (!(width > widest)) return;
-
-    // Deeper than the widest spline reaches, the surface above moves less by the square of the width, as K(0) does; the rest
-    // is spread so wide that it is taken as even over all of the water.
-    const float keep = (widest / width) * (widest / width);
-    for (float& t : level_[0].thickness) t *= keep;
-    rest_ = (1 - static_cast<double>(keep)) * before;
 }
 
 float Footprint::deposited_share() const {

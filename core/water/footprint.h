@@ -24,11 +24,11 @@ public:
 
     /// A wet piece of the surface: corners in the body's local frame, their depths, and its area as seen from above
     /// (n_z times its area). Its share of the displaced volume, minus that area times the mean depth, goes into the
-    /// columns around it; over a closed surface the shares add up to the body's thickness.
-    void deposit(const Vec3f corner[3], const float depth[3], float area_up);
-    /// After the last deposit: what has `cover` metres of water above it moves the surface the wider the more there is.
-    /// Keeps the volume.
-    void spread(float cover);
+    /// columns around it; over a closed surface the shares add up to the body's thickness. With `spread`, each slice of
+    /// the body moves the surface the wider the deeper it is. Keeps the volume.
+    void deposit(const Vec3f corner[3], const float depth[3], float area_up, bool spread);
+    /// After the last deposit: adds what was laid on coarse levels to thickness().
+    void gather();
 
     /// Pressure p on a horizontal area around a point: a Gaussian of that area's width (section 6.3), wider with
     /// depth, whose sum is p * area.
@@ -72,9 +72,8 @@ private:
 
     void shift(std::int32_t di, std::int32_t dj, Field* water);
     void leave_behind(std::int32_t di, std::int32_t dj, Field& water) const;
-    void add(float x, float y, float thickness);
-    void coarsen(std::size_t to);
-    void refine(std::size_t from, float share);
+    static void add(Level& grid, float x, float y, float thickness);
+    static void add_coarse(Level& grid, float x, float y, float thickness);
 
     float cell_;
     std::int32_t i0_ = 0, j0_ = 0;

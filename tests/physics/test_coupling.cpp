@@ -52,7 +52,7 @@ TEST_CASE("the displaced volume is in the water whatever the cells, the depth an
     const double whole = 0.2 * 0.04 * 0.3;
     for (const float cell : {0.1f, 0.05f, 0.025f, 0.0125f}) {
         World world = test::world_of();
-        const auto cells = static_cast<std::int32_t>(std::lround(3.2f / cell));
+        const auto cells = static_cast<std::int32_t>(std::lround(4.8f / cell));
         Water& water = world.create_water(test::water_of(cells, cell, 1.5f, Border::reflecting));
         Body& body = world.create_body(body_of(map, {0, 0, 0.5}));
         world.tick(0.002f);
