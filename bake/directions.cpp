@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 namespace frm::bake {
@@ -30,7 +31,11 @@ public:
 
     void run(std::size_t workers, int threads_each) {
         std::vector<std::thread> others;
-        for (std::size_t i = 1; i < workers; ++i) others.emplace_back([&] { work(threads_each); });
+        try {
+            for (std::size_t i = 1; i < workers; ++i) others.emplace_back([&] { work(threads_each); });
+        } catch (const std::system_error&) {
+            // The system gives no more threads: those that there are do the work.
+        }
         work(threads_each);
         for (std::thread& other : others) other.join();
         if (failure_) std::rethrow_exception(failure_);

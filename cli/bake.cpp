@@ -27,9 +27,11 @@ void print_plan(const bake::BakePlan& plan) {
     for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     std::uint64_t bytes = 0;
     for (const bake::FlowPlan& flow : plan.flows) bytes = std::max(bytes, flow.bytes);
-    std::fprintf(stderr, "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory for each that runs at a time\n",
-                 plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), plan.cell_updates,
-                 static_cast<double>(bytes) / 1e6);
+    std::fprintf(
+        stderr,
+        "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory for each that runs at a time\n",
+        plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), plan.cell_updates,
+        static_cast<double>(bytes) / 1e6);
 }
 
 void run(Options& o) {
@@ -50,6 +52,11 @@ void run(Options& o) {
 
     double worst = 0;
     for (const bake::DirectionReport& d : report.directions) worst = std::max(worst, d.uncertainty);
+    if (worst > 0.1)
+        std::fprintf(
+            stderr,
+            "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",
+            100 * worst);
     const double updates = plan.cell_updates / report.seconds / 1e6;
     if (o.json) {
         nlohmann::ordered_json j{{"file", o.out},
@@ -113,7 +120,8 @@ void add_bake(CLI::App& app) {
     command->add_option("--sources", o.bake.sources, "haptic sources, 1 to 4096 (default: by quality)")
         ->check(whole_within(1, 4096))
         ->type_name("N");
-    command->add_option("--resolution", o.bake.resolution, "grid cells across the object, 4 to 512 (default: by quality)")
+    command
+        ->add_option("--resolution", o.bake.resolution, "grid cells across the object, 4 to 512 (default: by quality)")
         ->check(number_within(4, 512))
         ->type_name("N");
     command->add_option("--triangles", o.bake.triangles, "sample triangles of the surface at most (default: 2000)")

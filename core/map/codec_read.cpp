@@ -183,7 +183,8 @@ private:
     }
 
     void fluctuation(const Chunk& c) {
-        needs(c, facts_ && regions_ && directions_, "comes before FACT, REGN and DIRS");
+        needs(c, facts_ && geometry_ && regions_ && directions_ && means_,
+              "comes before FACT, GEOM, REGN, DIRS or MEAN");
         if (c.index >= map_.directions.count()) corrupt(c, "names a direction that is not there");
         if (seen_[c.index]) corrupt(c, "comes twice");
         const std::size_t sources = map_.sources.size(), samples = map_.samples, width = Map::components;
