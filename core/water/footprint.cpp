@@ -53,27 +53,31 @@ struct Slices {
 /// it counts as even. This is the integral of that from 0 to w.
 Slices slices_above(int level, float w) {
     const auto c = static_cast<float>(1 << level);
+    const float inverse = 1 / c;
     Slices s;
     if (level == 0) {
         s.laid = std::min(w, c);
     } else {
         const float rise = std::clamp(w - 0.5f * c, 0.0f, 0.5f * c);
-        s.laid = rise * rise / c;
+        s.laid = rise * rise * inverse;
     }
     if (level < last_level) {
         const float fall = std::clamp(w - c, 0.0f, c);
-        s.laid += fall - fall * fall / (2 * c);
+        s.laid += fall - 0.5f * inverse * fall * fall;
     } else if (w > c) {
-        const float narrow = c * c * (1 / c - 1 / w);
+        const float narrow = c - c * c / w;
         s.laid += narrow;
         s.left = (w - c) - narrow;
     }
     return s;
 }
 
-double volume_of(const std::pmr::vector<float>& thickness) {
+double volume_of(const std::pmr::vector<float>& thickness, std::int32_t n, const Rect& wet) {
     double sum = 0;
-    for (const float t : thickness) sum += static_cast<double>(t);
+    for (std::int32_t j = wet.j0; j < wet.j1; ++j) {
+        const float* row = thickness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n);
+        for (std::int32_t i = wet.i0; i < wet.i1; ++i) sum += static_cast<double>(row[i]);
+    }
     return sum;
 }
 
@@ -194,16 +198,17 @@ void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_
     }
     const float extent = std::max(std::max({x[0], x[1], x[2]}) - std::min({x[0], x[1], x[2]}),
                                   std::max({y[0], y[1], y[2]}) - std::min({y[0], y[1], y[2]}));
-    const float widest = std::max({depth[0], depth[1], depth[2]}) * to_width;
+    const float widest = std::max({depth[0], depth[1], depth[2]}) * to_width, to_depth = 1.0f / to_width;
+    const float column_area = -area_up * scale * scale;
     for (int level = 0; level < (spread ? levels : 1); ++level) {
         const auto cells = static_cast<float>(1 << level);
         if (level > 0 && widest <= 0.5f * cells) break;
-        // Points no further apart than a cell: quadratic splines on such a grid add up evenly, so that front and back
-        // of a slanted sheet cancel in every column.
-        const std::int32_t parts =
-            std::clamp(static_cast<std::int32_t>(std::ceil(std::min(extent / cells, 32.0f))), 1, 32);
-        const float third = 1.0f / (3.0f * static_cast<float>(parts)), inverse = 1.0f / cells;
-        const float area = -area_up / (static_cast<float>(parts * parts) * cell_ * cell_);
+        // Centres of triangles no further apart than about a cell (two triangles to a square): quadratic splines on such
+        // a grid add up evenly, so that front and back of a slanted sheet cancel in every column.
+        const float inverse = 1.0f / cells;
+        const std::int32_t parts = 1 + static_cast<std::int32_t>(std::min(extent * inverse * (2.0f / 3), 31.0f));
+        const float third = 1.0f / (3.0f * static_cast<float>(parts));
+        const float area = column_area / static_cast<float>(parts * parts);
         for (std::int32_t a = 0; a < parts; ++a) {
             for (std::int32_t b = 0; b < 2 * (parts - a) - 1; ++b) {
                 // Centres of the parts: upright ones at (3a + 1, 3b' + 1), inverted ones at (3a + 2, 3b' + 2), in
@@ -216,8 +221,8 @@ void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_
                 float thickness = d;
                 if (spread) {
                     const Slices slices = slices_above(level, d * to_width);
-                    thickness = slices.laid / to_width;
-                    rest_ += static_cast<double>(area * slices.left / to_width);
+                    thickness = slices.laid * to_depth;
+                    rest_ += static_cast<double>(area * slices.left * to_depth);
                 }
                 const float px = (r * x[0] + s * x[1] + t * x[2]) * inverse;
                 const float py = (r * y[0] + s * y[1] + t * y[2]) * inverse;
@@ -295,7 +300,7 @@ void Footprint::splat_pressure(const Vec3f& at, float pressure, float area, floa
 
 void Footprint::end() {
     active_ = active();
-    volume_ = volume_of(level_[0].thickness) + rest_;
+    volume_ = volume_of(level_[0].thickness, size(), level_[0].wet) + rest_;
     if (first) first_volume_ = volume_;
     rest_before_ = rest_;
     std::swap(level_[0].thickness, thickness_before_);
