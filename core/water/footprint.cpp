@@ -201,33 +201,37 @@ void Footprint::deposit(const Vec3f corner[3], const float depth[3], float area_
     const float widest = std::max({depth[0], depth[1], depth[2]}) * to_width, to_depth = 1.0f / to_width;
     const float column_area = -area_up * scale * scale;
     for (int level = 0; level < (spread ? levels : 1); ++level) {
-        const auto cells = static_cast<float>(1 << level);
-        if (level > 0 && widest <= 0.5f * cells) break;
+        if (level > 0 && widest <= 0.5f * static_cast<float>(1 << level)) break;
+        Level& grid = level_[static_cast<std::size_t>(level)];
+        const float inverse = 1.0f / static_cast<float>(1 << level);
         // Centres of triangles no further apart than about a cell (two triangles to a square): quadratic splines on such
         // a grid add up evenly, so that front and back of a slanted sheet cancel in every column.
-        const float inverse = 1.0f / cells;
         const std::int32_t parts = 1 + static_cast<std::int32_t>(std::min(extent * inverse * (2.0f / 3), 31.0f));
-        const float third = 1.0f / (3.0f * static_cast<float>(parts));
         const float area = column_area / static_cast<float>(parts * parts);
+        const auto lay = [&](float r, float s, float t) {
+            const float d = r * depth[0] + s * depth[1] + t * depth[2];
+            float thickness = d;
+            if (spread) {
+                const Slices slices = slices_above(level, d * to_width);
+                thickness = slices.laid * to_depth;
+                rest_ += static_cast<double>(area * slices.left * to_depth);
+            }
+            (level == 0 ? add : add_coarse)(grid, (r * x[0] + s * x[1] + t * x[2]) * inverse,
+                                            (r * y[0] + s * y[1] + t * y[2]) * inverse,
+                                            area * thickness * inverse * inverse);
+        };
+        if (parts == 1) {
+            lay(1.0f / 3, 1.0f / 3, 1.0f / 3);
+            continue;
+        }
+        const float third = 1.0f / (3.0f * static_cast<float>(parts));
         for (std::int32_t a = 0; a < parts; ++a) {
             for (std::int32_t b = 0; b < 2 * (parts - a) - 1; ++b) {
-                // Centres of the parts: upright ones at (3a + 1, 3b' + 1), inverted ones at (3a + 2, 3b' + 2), in
-                // thirds.
+                // Upright parts have their centres at (3a + 1, 3b' + 1), inverted ones at (3a + 2, 3b' + 2), in thirds.
                 const std::int32_t odd = b & 1, column = b >> 1;
                 const float s = static_cast<float>(3 * a + 1 + odd) * third;
                 const float t = static_cast<float>(3 * column + 1 + odd) * third;
-                const float r = 1.0f - s - t;
-                const float d = r * depth[0] + s * depth[1] + t * depth[2];
-                float thickness = d;
-                if (spread) {
-                    const Slices slices = slices_above(level, d * to_width);
-                    thickness = slices.laid * to_depth;
-                    rest_ += static_cast<double>(area * slices.left * to_depth);
-                }
-                const float px = (r * x[0] + s * x[1] + t * x[2]) * inverse;
-                const float py = (r * y[0] + s * y[1] + t * y[2]) * inverse;
-                (level == 0 ? add : add_coarse)(level_[static_cast<std::size_t>(level)], px, py,
-                                                area * thickness * inverse * inverse);
+                lay(1.0f - s - t, s, t);
             }
         }
     }
