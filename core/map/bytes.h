@@ -17,7 +17,6 @@ public:
     explicit ByteWriter(Buffer& out) : out_(out) {}
 
     void u8(std::uint8_t v) { out_.push_back(v); }
-    void u16(std::uint16_t v) { integer(v); }
     void u32(std::uint32_t v) { integer(v); }
     void u64(std::uint64_t v) { integer(v); }
     void f32(float v) {
@@ -59,7 +58,6 @@ public:
         return p;
     }
     std::uint8_t u8() { return *take(1); }
-    std::uint16_t u16() { return static_cast<std::uint16_t>(integer<2>()); }
     std::uint32_t u32() { return static_cast<std::uint32_t>(integer<4>()); }
     std::uint64_t u64() { return integer<8>(); }
     float f32() {

@@ -23,7 +23,6 @@ namespace format {
 
 constexpr std::uint8_t magic[8] = {0x89, 'F', 'R', 'M', '\r', '\n', 0x1A, '\n'};
 constexpr std::size_t header_bytes = 40;
-constexpr std::size_t chunk_header_bytes = 32;
 
 }  // namespace format
 

@@ -96,23 +96,9 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
 }
 
 void push_water(Footprint& footprint, Field& water, float factor) {
-    if (footprint.pressed().empty()) return;
-    footprint.own.push(footprint.pressure(), footprint.pressed(), factor);
-    // The same differences as in Field::push, read from the window.
-    const std::int32_t n = footprint.size(), nx = water.def().nx;
-    const Rect& p = footprint.pressed();
-    const Rect r = inside_water(footprint, water, Rect{p.i0, p.j0, p.i1 + 1, p.j1 + 1}.clipped(n, n));
-    const float f = factor / water.def().cell;
-    const float* pressure = footprint.pressure();
-    for (std::int32_t j = r.j0; j < r.j1; ++j) {
-        for (std::int32_t i = r.i0; i < r.i1; ++i) {
-            const std::int32_t wi = i + footprint.i0(), wj = j + footprint.j0();
-            if (wi > 0 && i > 0)
-                water.velocity_x()[at(wi, wj, nx + 1)] += f * (pressure[at(i, j, n)] - pressure[at(i - 1, j, n)]);
-            if (wj > 0 && j > 0)
-                water.velocity_y()[at(wi, wj, nx)] += f * (pressure[at(i, j, n)] - pressure[at(i, j - 1, n)]);
-        }
-    }
+    const std::int32_t n = footprint.size();
+    footprint.own.push(footprint.pressure(), n, n, footprint.pressed(), 0, 0, factor);
+    water.push(footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), factor);
 }
 
 }  // namespace frm

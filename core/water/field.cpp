@@ -1,5 +1,6 @@
 #include "core/water/field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -120,19 +121,25 @@ void Field::damp(float dt, float speed) {
     damp_columns(v_.data(), nx, ny + 1, 0.5f);
 }
 
-void Field::push(const float* pressure, const Rect& where, float factor) {
-    const std::int32_t nx = def_.nx, ny = def_.ny;
-    // The gradient reaches one face beyond the cells; faces of the outer border are not pushed.
-    const Rect r = Rect{where.i0, where.j0, where.i1 + 1, where.j1 + 1}.clipped(nx, ny);
+void Field::push(const float* pressure, std::int32_t columns, std::int32_t rows, const Rect& where, std::int32_t di,
+                 std::int32_t dj, float factor) {
+    const std::int32_t nx = def_.nx;
+    // The gradient reaches one face beyond the cells; faces of either array's outer border are not pushed.
+    const Rect r = Rect{where.i0, where.j0, where.i1 + 1, where.j1 + 1}
+                       .clipped(columns, rows)
+                       .moved(di, dj)
+                       .clipped(nx, def_.ny)
+                       .moved(-di, -dj);
     if (r.empty()) return;
     const float f = factor / def_.cell;
+    const std::int32_t first_i = std::max({r.i0, 1, 1 - di}), first_j = std::max(1, 1 - dj);
     for (std::int32_t j = r.j0; j < r.j1; ++j) {
-        const float* p = pressure + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
-        float* u = u_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx + 1);
-        float* v = v_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
-        for (std::int32_t i = r.i0 > 0 ? r.i0 : 1; i < r.i1; ++i) u[i] += f * (p[i] - p[i - 1]);
-        if (j == 0) continue;
-        for (std::int32_t i = r.i0; i < r.i1; ++i) v[i] += f * (p[i] - p[i - nx]);
+        const float* p = pressure + static_cast<std::ptrdiff_t>(j) * columns;
+        float* u = u_.data() + static_cast<std::ptrdiff_t>(j + dj) * (nx + 1) + di;
+        float* v = v_.data() + static_cast<std::ptrdiff_t>(j + dj) * nx + di;
+        for (std::int32_t i = first_i; i < r.i1; ++i) u[i] += f * (p[i] - p[i - 1]);
+        if (j < first_j) continue;
+        for (std::int32_t i = r.i0; i < r.i1; ++i) v[i] += f * (p[i] - p[i - columns]);
     }
 }
 

@@ -60,8 +60,10 @@ public:
     /// One leapfrog step: velocities by the slope (Eq. 7), then heights by the divergence (Eq. 8). No numerical
     /// damping.
     void step(float dt, float gravity, std::uint32_t threads);
-    /// The second term of Eq. 10 over `where`: velocities += factor * gradient of pressure; factor = dt / density.
-    void push(const float* pressure, const Rect& where, float factor);
+    /// The second term of Eq. 10: velocities += factor * gradient of pressure; factor = dt / density. The pressure is an
+    /// array of `columns` by `rows` cells, not zero within `where`, whose cell (0, 0) lies on cell (di, dj) of this field.
+    void push(const float* pressure, std::int32_t columns, std::int32_t rows, const Rect& where, std::int32_t di,
+              std::int32_t dj, float factor);
 
     /// Bilinear; zero outside.
     float height_at(const GridOrigin& origin, float x, float y) const;

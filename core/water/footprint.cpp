@@ -21,7 +21,7 @@ constexpr float widths_per_depth = 1.47f;
 /// The spline of a level is as wide as a Gaussian of 0.58 of its cells: 0.5 of its own, and 1/4, 1/16, ... from each
 /// gathering.
 constexpr float width_of_spline = 0.58f;
-constexpr int last_level = 3;
+constexpr int last_level = Footprint::levels - 1;
 
 FieldDef window_of(const FieldDef& water, float radius) {
     FieldDef def = water;

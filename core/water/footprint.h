@@ -15,6 +15,8 @@ namespace frm {
 
 class Footprint {
 public:
+    static constexpr int levels = 4;  ///< of grids of thickness, each twice as coarse
+
     /// `radius`: of a sphere around the body's centre that holds the body, m.
     Footprint(const FieldDef& water, float radius, std::pmr::memory_resource* memory);
 
@@ -68,8 +70,6 @@ private:
         std::int32_t size = 0;
         Rect wet;
     };
-    static constexpr int levels = 4;
-
     void shift(std::int32_t di, std::int32_t dj, Field* water);
     void leave_behind(std::int32_t di, std::int32_t dj, Field& water) const;
     static void add(Level& grid, float x, float y, float thickness);
