@@ -315,6 +315,8 @@ void Footprint::end() {
 void Footprint::hash(StateHash& hash) const {
     hash.value(i0_);
     hash.value(j0_);
+    hash.value(rest_before_);
+    hash.value(first_volume_);
     hash.words(thickness_before_.data(), thickness_before_.size());
     if (active_) own.hash(hash);
 }
