@@ -90,7 +90,7 @@ DirectionReport describe(const FlowSeries& flow, const FlowCase& flow_case) {
         drag += static_cast<double>(flow.pressure[i] + flow.friction[i]) * flow_case.direction[static_cast<int>(i % 3)];
     drag /= flow.samples;
     const double unit = 0.5 * flow_case.density * flow_case.speed * flow_case.speed * flow.plan.projected_area;
-    return {flow_case.direction, drag / unit, flow.uncertainty, flow.seconds, flow.mlups};
+    return {flow_case.direction, drag / unit, flow.uncertainty.total(), flow.seconds, flow.mlups};
 }
 
 // Wall time, thread count and machine are left out: the same mesh and options give the same file.
@@ -174,8 +174,7 @@ BakePlan plan_bake(const BakeOptions& options) {
         c.start_up = plan.start_up;
         c.duration = plan.period + plan.overlap;
         plan.flows.push_back(plan_flow(plan.surface, c));
-        plan.cell_updates +=
-            static_cast<double>(plan.flows.back().cells) * static_cast<double>(plan.flows.back().steps);
+        plan.cell_updates += plan.flows.back().updates;
         const std::string& warning = plan.flows.back().warning;
         if (!warning.empty() && std::find(plan.notes.begin(), plan.notes.end(), warning) == plan.notes.end())
             plan.notes.push_back(warning);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -12,7 +13,7 @@
 namespace frm::bake {
 namespace {
 
-double updates_of(const FlowPlan& plan) { return static_cast<double>(plan.cells) * static_cast<double>(plan.steps); }
+double updates_of(const FlowPlan& plan) { return plan.updates; }
 
 class Work {
 public:
@@ -49,7 +50,8 @@ private:
                 flow_case.threads = threads;
                 const FlowSeries series =
                     solve_flow(surface_, regions_, flow_case,
-                               [&](double share, const std::string& note) { return report(index, share, note); });
+                               [&](const FlowState& state) { return report(index, state); });
+                if (series.ending == FlowEnding::cancelled) throw FlowCancelled("bake: cancelled");
                 const std::lock_guard<std::mutex> lock(lock_);
                 ++finished_;
                 share_[index] = 1;
@@ -63,13 +65,15 @@ private:
         }
     }
 
-    bool report(std::size_t index, double share, const std::string& note) {
+    bool report(std::size_t index, const FlowState& state) {
         const std::lock_guard<std::mutex> lock(lock_);
         if (stop_.load()) return false;
-        share_[index] = share;
+        share_[index] = state.share;
         if (!progress_) return true;
         double updates = 0;
         for (std::size_t i = 0; i < cases_.size(); ++i) updates += share_[i] * updates_of(plans_[i]);
+        char note[64];
+        std::snprintf(note, sizeof note, state.recording ? "drag %.2f" : "starting", state.drag_coefficient);
         return progress_(updates / all_updates_,
                          std::to_string(finished_) + " of " + std::to_string(cases_.size()) + " directions, " + note);
     }

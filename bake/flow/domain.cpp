@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "bake/flow/blocks.h"
+
 namespace frm::bake::flow {
 namespace {
 
@@ -19,15 +21,8 @@ constexpr double least_viscosity = 5e-6;
 constexpr double most_viscosity = 0.2, least_speed = 1e-3;
 constexpr double sample_rate = 32;  // samples while the stream travels one reference length
 constexpr std::uint64_t most_steps = 50'000'000;
-
-// The box, in body sizes (square root of the projected area). A larger one costs cells and gains little: 8 ahead, 10
-// behind and a blockage of 1 % change the corrected drag of a sphere at Re 100 by 2 % and of a cube at Re 1e4 by 1 %,
-// at 6 times the cost. In two dimensions a body is felt much farther: with 2.5 ahead a cylinder's drag was 19 % high,
-// with 10 it is 3 %.
-constexpr double upstream = 3.5, downstream = 6.0, section_upstream = 10, section_downstream = 12, sponge_share = 1.5;
-constexpr double target_blockage = 0.03, section_blockage = 0.025;
-constexpr double least_margin = 1.0;  // beside the body
-constexpr double least_margin_cells = 6;
+constexpr double sponge_share = 0.12;      // of the coarsest block's length
+constexpr double most_normal_flow = 0.05;  // share of a spinning wall's speed
 
 std::string number(double v) {
     char digits[32];
@@ -47,7 +42,11 @@ void check(const FlowCase& c) {
     const auto positive = [](double v, double low, double high) { return std::isfinite(v) && v >= low && v <= high; };
     require(finite(c.direction) && std::abs(length(c.direction) - 1) < 1e-3, "direction", text(c.direction),
             "a unit vector");
-    require(positive(c.speed, 1e-6, 1e4), "speed", number(c.speed), "from 1e-6 to 1e4 m/s");
+    const bool spins = length(c.spin) > 0;
+    require(finite(c.spin) && length(c.spin) < 1e6, "spin", text(c.spin), "under 1e6 rad/s");
+    require(finite(c.spin_centre), "spin_centre", "not finite", "a point in metres");
+    require(positive(c.speed, 1e-6, 1e4) || (spins && c.speed == 0), "speed", number(c.speed),
+            "from 1e-6 to 1e4 m/s (0 where the body spins)");
     require(positive(c.viscosity, 1e-12, 1e6), "viscosity", number(c.viscosity), "from 1e-12 to 1e6 m^2/s");
     require(positive(c.density, 1e-6, 1e6), "density", number(c.density), "from 1e-6 to 1e6 kg/m^3");
     require(positive(c.resolution, 4, 512), "resolution", number(c.resolution), "from 4 to 512");
@@ -56,7 +55,17 @@ void check(const FlowCase& c) {
     require(positive(c.start_up, 0.5, 1e4), "start_up", number(c.start_up), "from 0.5 to 10000 reference lengths");
     require(positive(c.duration, 0.5, 1e5), "duration", number(c.duration), "from 0.5 to 100000 reference lengths");
     require(c.threads >= 0 && c.threads <= 4096, "threads", std::to_string(c.threads), "from 0 (automatic) to 4096");
-    if (!c.section) return;
+    require(std::isfinite(c.turn) && std::abs(c.turn) <= 360, "turn", number(c.turn), "from -360 to 360 degrees");
+    require(c.confidence == 0 || positive(c.confidence, 1e-4, 1), "confidence", number(c.confidence),
+            "0 (none) or a share from 0.0001 to 1");
+    require(c.seconds == 0 || positive(c.seconds, 1e-3, 1e9), "seconds", number(c.seconds), "0 (no limit) or more");
+    if (!c.section) {
+        require(c.slab == 0, "slab", number(c.slab), "0 where no section is solved");
+        return;
+    }
+    require(!spins, "spin", text(c.spin), "zero for a section");
+    require(c.slab == 0 || positive(c.slab, 0.1, 100), "slab", number(c.slab),
+            "0 (two dimensions) or from 0.1 to 100 reference lengths");
     require(finite(c.section_normal) && std::abs(length(c.section_normal) - 1) < 1e-3, "section_normal",
             text(c.section_normal), "a unit vector");
     require(std::abs(dot(c.section_normal, c.direction)) < 1e-3, "section_normal", "not across the direction",
@@ -109,7 +118,7 @@ Frame stream_frame(const Surface& surface, const FlowCase& c) {
         const Vec3d n = c.section_normal - frame.x * dot(c.section_normal, frame.x);
         frame.z = n / length(n);
         frame.y = cross(frame.z, frame.x);
-        return frame;
+        return frame;  // turned about the stream, the section would be another one
     }
     const Vec3d a{std::abs(frame.x.x), std::abs(frame.x.y), std::abs(frame.x.z)};
     const Vec3d least = a.z <= a.x && a.z <= a.y ? Vec3d{0, 0, 1} : a.y <= a.x ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
@@ -132,7 +141,8 @@ Frame stream_frame(const Surface& surface, const FlowCase& c) {
             frame = turned;
         }
     }
-    return frame;
+    const double angle = c.turn * (3.14159265358979323846 / 180), s = std::sin(angle), k = std::cos(angle);
+    return {frame.x, frame.y * k + frame.z * s, frame.z * k - frame.y * s};
 }
 
 /// The outline of the body in the section's plane: where its triangles cross it, as segments with the water on the
@@ -172,7 +182,10 @@ double middle_offset(double extent_cells) {
     return distance(0.5 * extent_cells) <= distance(0.5 * extent_cells + 0.5) ? 0.0 : 0.5;
 }
 
-int whole(double v) { return static_cast<int>(std::ceil(v)); }
+/// From the lattice's origin to finest cells from the finest block's first node.
+Vec3d in_cells(const Vec3d& stream, const Domain& d) {
+    return (stream - d.origin) / d.plan.cell - d.node(0, 0, 0, 0);
+}
 
 Walls walls_of(const Surface& surface, const Domain& d) {
     Walls walls;
@@ -180,7 +193,7 @@ Walls walls_of(const Surface& surface, const Domain& d) {
     walls.source.resize(surface.triangles.size());
     for (std::size_t t = 0; t < walls.source.size(); ++t) walls.source[t] = static_cast<std::uint32_t>(t);
     walls.vertices.reserve(surface.vertices.size());
-    for (const Vec3d& v : surface.vertices) walls.vertices.push_back((d.frame.to_stream(v) - d.origin) / d.plan.cell);
+    for (const Vec3d& v : surface.vertices) walls.vertices.push_back(in_cells(d.frame.to_stream(v), d));
     return walls;
 }
 
@@ -188,7 +201,7 @@ Walls walls_of(const std::vector<Segment>& segments, const Domain& d) {
     Walls walls;
     for (const Segment& s : segments) {
         const auto first = static_cast<std::uint32_t>(walls.vertices.size());
-        const Vec3d a = (s.a - d.origin) / d.plan.cell, b = (s.b - d.origin) / d.plan.cell;
+        const Vec3d a = in_cells(s.a, d), b = in_cells(s.b, d);
         walls.vertices.insert(walls.vertices.end(),
                               {{a.x, a.y, -0.5}, {b.x, b.y, -0.5}, {b.x, b.y, 0.5}, {a.x, a.y, 0.5}});
         walls.triangles.push_back({first, first + 1, first + 2});
@@ -226,6 +239,29 @@ void advise(const Surface& surface, const Vec3d& size, const FlowCase& c, FlowPl
     }
 }
 
+/// Only a body that its own turning leaves where it is can spin: nodes would else change between body and water.
+void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
+    const double rate = length(c.spin);
+    if (rate == 0) return;
+    double normal_flow = 0, area = 0;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const Vec3d a = surface.corner(t, 0), b = surface.corner(t, 1), e = surface.corner(t, 2);
+        const Vec3d normal = cross(b - a, e - a) * 0.5, middle = (a + b + e) / 3.0 - c.spin_centre;
+        const double size = length(normal), through = dot(normal, cross(c.spin, middle));
+        if (size > 0) normal_flow += through * through / size;
+        area += size;
+        for (int i = 0; i < 3; ++i) {
+            const Vec3d arm = surface.corner(t, i) - c.spin_centre;
+            d.radius = std::max(d.radius, length(cross(c.spin, arm)) / rate);
+        }
+    }
+    const double share = std::sqrt(normal_flow / area) / (rate * d.radius);
+    if (share > most_normal_flow) {
+        throw BakeError("flow: the body is not one of revolution about the axis of spin (its wall would move through "
+                        "the water at " + number(100 * share) + " % of its speed); only such bodies can spin");
+    }
+}
+
 }  // namespace
 
 Domain plan_domain(const Surface& surface, const FlowCase& c) {
@@ -246,8 +282,10 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
         body = bounds(surface.vertices, d.frame);
     }
     const Vec3d size = body.size();
+    plan_spin(surface, c, d);
 
     FlowPlan& plan = d.plan;
+    plan.axes = {d.frame.x, d.frame.y, d.frame.z};
     plan.projected_area = c.section ? size.y * c.section_span : projected_area(surface, d.frame.x);
     if (!(plan.projected_area > 0)) {
         throw BakeError("flow: the body has no area across the stream; check the surface and the direction");
@@ -255,67 +293,69 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     const double across = c.section ? size.y : std::sqrt(plan.projected_area);
     plan.reference_length = c.reference_length > 0 ? c.reference_length : across;
     plan.cell = plan.reference_length / c.resolution;
-    plan.reynolds = c.speed * plan.reference_length / c.viscosity;
+    d.speed = std::max(c.speed, length(c.spin) * d.radius);
+    plan.reynolds = d.speed * plan.reference_length / c.viscosity;
     d.length = c.resolution;
     // A relaxation time far above 1 would move interpolated walls, so a slow, thick fluid takes a lower lattice speed.
-    d.stream_speed = std::min(lattice_speed, most_viscosity * plan.reynolds / d.length);
-    if (d.stream_speed < least_speed) {
+    d.lattice_speed = std::min(lattice_speed, most_viscosity * plan.reynolds / d.length);
+    if (d.lattice_speed < least_speed) {
         throw BakeError("flow: Reynolds number " + number(plan.reynolds) + " is too low for resolution " +
                         number(c.resolution) + "; it must be at least " +
                         number(least_speed * d.length / most_viscosity) + ": raise speed or lower viscosity");
     }
-    plan.time_step = d.stream_speed * plan.cell / c.speed;
-    d.viscosity = std::max(least_viscosity, d.stream_speed * d.length / plan.reynolds);
-    plan.reynolds_solved = d.stream_speed * d.length / d.viscosity;
+    d.stream_speed = d.lattice_speed * (c.speed / d.speed);
+    plan.time_step = d.lattice_speed * plan.cell / d.speed;
+    d.viscosity = std::max(least_viscosity, d.lattice_speed * d.length / plan.reynolds);
+    plan.reynolds_solved = d.lattice_speed * d.length / d.viscosity;
 
-    // The box: margins beside the body until it blocks no more than the target; a margin counts cells when the body is
-    // small.
-    const double cell = plan.cell, bulk = std::max(across / cell, 4.0);
-    const double wide = size.y / cell, high = size.z / cell, least = std::max(least_margin * bulk, least_margin_cells);
-    double margin = least;
-    if (c.section) {
-        margin = std::max(margin, 0.5 * wide * (1 / section_blockage - 1));
-    } else {
-        const double wanted = plan.projected_area / (cell * cell) / target_blockage;
-        const double half = 0.5 * (wide + high);  // (wide + 2 m) (high + 2 m) = wanted
-        const double root = std::sqrt(half * half - wide * high + wanted);
-        margin = std::max(margin, 0.5 * (root - half));
+    // The lattice's origin is a node of every block, near the body's middle.
+    const Vec3d extent = size / plan.cell, half = extent * 0.5;
+    Vec3d middle{middle_offset(extent.x), middle_offset(extent.y), middle_offset(extent.z)};
+    if (c.section) middle.z = 0;
+    BlockRequest request;
+    request.low = middle - half;
+    request.high = middle + half;
+    request.section = c.section;
+    request.bulk = std::max(across / plan.cell, 4.0);
+    request.still = c.speed == 0;
+    if (c.slab > 0) {
+        const double coarsest = 1 << (block_count(request.bulk, true) - 1);
+        request.layers = static_cast<int>(std::max(1.0, std::round(c.slab * d.length / coarsest)) * coarsest);
     }
-    const double before = std::max((c.section ? section_upstream : upstream) * bulk, least);
-    const double after = std::max((c.section ? section_downstream : downstream) * bulk, 2 * least);
-    const double cells_x = size.x / cell + before + after;
-    const double expected = cells_x * (wide + 2 * margin) * (c.section ? 1 : high + 2 * margin);
-    const double copies = 2.0 * direction_count * sizeof(float);
-    const double longest = std::max({cells_x, wide + 2 * margin, high + 2 * margin});
-    if (!(expected * copies < static_cast<double>(c.memory_limit)) || longest > 1e6) {
-        refuse_memory(expected * copies, c.memory_limit);
+    d.blocks = plan_blocks(request);
+    d.origin = body.centre() - middle * plan.cell;
+    if (c.section) d.origin.z = dot(d.frame.z, c.section_origin);
+    d.spin = d.frame.to_stream(c.spin) * plan.time_step;
+    d.spin_centre = in_cells(d.frame.to_stream(c.spin_centre), d);
+
+    std::uint64_t bytes = 0, finest_steps_of_cells = 0;
+    for (std::size_t l = 0; l < d.blocks.size(); ++l) {
+        const Block& block = d.blocks[l];
+        const Grid& grid = block.grid;
+        FlowBlock shown;
+        shown.cell = plan.cell * (1 << l);
+        shown.cells = grid.cells();
+        shown.low = d.origin + d.node(static_cast<int>(l), 0, 0, 0) * plan.cell;
+        shown.high = d.origin + d.node(static_cast<int>(l), grid.nx - 1, grid.ny - 1, grid.nz - 1) * plan.cell;
+        plan.blocks.push_back(shown);
+        plan.cells += grid.cells();
+        finest_steps_of_cells += grid.cells() >> l;
+        // In floating point first: the product of three long sides may not fit an integer.
+        const double expected = 2.0 * direction_count * sizeof(float) * grid.nx * (grid.ny + 2.0) * (grid.nz + 2.0);
+        if (expected > static_cast<double>(c.memory_limit)) refuse_memory(expected, c.memory_limit);
+        bytes += 2 * Populations::bytes(grid);
     }
+    const FlowBlock& box = plan.blocks.back();
+    const double cross_section =
+        (box.high.y - box.low.y) * (c.section ? c.section_span : box.high.z - box.low.z);
+    plan.blockage = plan.projected_area / cross_section;
+    d.sponge = sponge_share * d.blocks.back().grid.nx;
+    const double unit = c.density * std::pow(plan.cell, 4) / (plan.time_step * plan.time_step);
+    const double span_cells = c.section_span / (plan.cell * d.finest().nz);
+    d.force_unit = c.section ? unit * span_cells : unit;
+    d.drag_area = plan.projected_area / (plan.cell * plan.cell) / (c.section ? span_cells : 1);
 
-    Grid& grid = d.grid;
-    grid.section = c.section;
-    const int lanes = static_cast<int>(Grid::lanes);
-    grid.nx = (whole(cells_x) + 2 + lanes - 1) / lanes * lanes - 2;
-    const auto place = [&](double extent, double room, int& count) {
-        const double offset = middle_offset(extent);
-        const int half = whole(0.5 * extent + room);
-        count = offset == 0.0 ? 2 * half + 1 : 2 * half;
-        return offset == 0.0 ? static_cast<double>(half) : half - 0.5;
-    };
-    const Vec3d centre = body.centre();
-    const double node_y = place(wide, margin, grid.ny);
-    double node_z = 0;
-    grid.nz = 1;
-    if (!c.section) node_z = place(high, margin, grid.nz);
-    const double middle_x = std::floor(before + 0.5 * size.x / cell) + middle_offset(size.x / cell);
-    d.origin = centre - Vec3d{middle_x, node_y, node_z} * cell;
-
-    d.sponge = sponge_share * bulk;
-    d.cross_section = static_cast<double>(grid.ny) * cell * (c.section ? c.section_span : grid.nz * cell);
-    plan.blockage = plan.projected_area / d.cross_section;
-    const double unit = c.density * std::pow(cell, 4) / (plan.time_step * plan.time_step);
-    d.force_unit = c.section ? unit * (c.section_span / cell) : unit;
-
-    const double per_length = d.length / d.stream_speed;
+    const double per_length = d.length / d.lattice_speed;
     const double interval = std::max(1.0, std::floor(per_length / sample_rate + 0.5));
     const double start = std::ceil(c.start_up * per_length);
     const double count = std::max(8.0, std::floor(c.duration * per_length / interval));
@@ -328,12 +368,14 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     d.samples = static_cast<std::uint32_t>(count);
     d.ramp_steps = static_cast<std::uint32_t>(std::ceil(std::min(2.0, c.start_up / 3) * per_length));
     plan.steps = d.start_steps + std::uint64_t{d.interval_steps} * d.samples + 1;
-    plan.cells = grid.cells();
-    d.walls = c.section ? walls_of(segments, d) : walls_of(surface, d);
-    // Two copies of the populations, a flag a cell, and some two hundred bytes for each cell of the body's surface.
-    const double wetted = c.section ? 4 * (size.x + size.y) / cell : measure(surface).area / (cell * cell);
-    plan.bytes = 2 * Populations::bytes(grid) + grid.allocated() + static_cast<std::uint64_t>(wetted * 5 * 200);
+    plan.updates = static_cast<double>(finest_steps_of_cells) * static_cast<double>(plan.steps);
+    // Two copies of the populations, a flag a finest cell, and some two hundred bytes for each cell of the body's
+    // surface.
+    const double wetted = c.section ? 4 * (size.x + size.y) / plan.cell * d.finest().nz
+                                    : measure(surface).area / (plan.cell * plan.cell);
+    plan.bytes = bytes + d.finest().allocated() + static_cast<std::uint64_t>(wetted * 5 * 200);
     if (plan.bytes > c.memory_limit) refuse_memory(static_cast<double>(plan.bytes), c.memory_limit);
+    d.walls = c.section ? walls_of(segments, d) : walls_of(surface, d);
     advise(surface, size, c, plan);
     return d;
 }

@@ -32,16 +32,16 @@ void fill_stream(const Grid& grid, Populations& populations, float speed) {
         for (std::size_t r = 0; r < grid.allocated_rows(); ++r) {
             const std::size_t line = r % lines, layer = r / lines;
             const bool beside = line == 0 || line + 1 == lines ||
-                                (!grid.section && (layer == 0 || layer == static_cast<std::size_t>(grid.nz) + 1));
+                                (!grid.periodic && (layer == 0 || layer == static_cast<std::size_t>(grid.nz) + 1));
             float* const row = p + r * pitch;
             if (beside) std::fill(row, row + pitch, value);
-            row[pitch - 1] = value;
+            row[pitch - 1] = value;  // the next row's ghost ahead
         }
     }
 }
 
 void close_row(const Grid& grid, Populations& populations, std::size_t row,
-               const std::array<float, direction_count>& stream) {
+               const std::array<float, direction_count>& stream, bool open) {
     const std::size_t first = grid.row(row), last = first + static_cast<std::size_t>(grid.nx) - 1;
     float excess = 0, mx = 0, my = 0, mz = 0;
     for (int i = 0; i < direction_count; ++i) {
@@ -57,16 +57,19 @@ void close_row(const Grid& grid, Populations& populations, std::size_t row,
     excess *= 1 - outlet_restoring;
     for (int i = 1; i < direction_count; ++i) {
         const Direction& c = directions[static_cast<std::size_t>(i)];
-        if (c.x < 0) populations.at(i)[last + 1] = equilibrium(i, excess, ux, uy, uz);
+        if (c.x < 0) {
+            populations.at(i)[last + 1] =
+                open ? equilibrium(i, excess, ux, uy, uz) : stream[static_cast<std::size_t>(i)];
+        }
         if (c.x > 0) populations.at(i)[first + grid.pitch() - 1] = stream[static_cast<std::size_t>(i)];
     }
 }
 
-std::vector<float> relaxation_times(const Grid& grid, double viscosity, double sponge) {
+std::vector<float> relaxation_times(const Grid& grid, double base, double sponge) {
     std::vector<float> times(grid.pitch());
-    const double base = 0.5 + 3 * viscosity;
     for (std::size_t x = 0; x < times.size(); ++x) {
-        const double depth = std::clamp((static_cast<double>(x) - (grid.nx - sponge)) / sponge, 0.0, 1.0);
+        const double past = static_cast<double>(x) - (grid.nx - sponge);
+        const double depth = sponge > 0 ? std::clamp(past / sponge, 0.0, 1.0) : 0.0;
         times[x] = static_cast<float>(base + std::max(0.0, 1 - base) * depth * depth);
     }
     return times;

@@ -21,12 +21,12 @@ void fill_stream(const Grid& grid, Populations& populations, float speed);
 
 /// Puts back the two ghosts of a row after the collision has run over them: the inlet's holds the stream; the outlet's
 /// is the equilibrium of the last cell, its density drawn a little to the stream's so that the level of pressure cannot
-/// drift, its flow never inwards.
+/// drift, its flow never inwards. Not `open`: it holds the stream too (still water).
 void close_row(const Grid& grid, Populations& populations, std::size_t row,
-               const std::array<float, direction_count>& stream);
+               const std::array<float, direction_count>& stream, bool open);
 
 /// Relaxation time for each cell of a row: the fluid's, and in the last `sponge` cells before the outlet rising to 1,
 /// where the wake dissolves before it meets the outlet.
-std::vector<float> relaxation_times(const Grid& grid, double viscosity, double sponge);
+std::vector<float> relaxation_times(const Grid& grid, double base, double sponge);
 
 }  // namespace frm::bake::flow

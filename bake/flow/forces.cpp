@@ -16,8 +16,8 @@ double along_normal(const Link& link, const Direction& c) {
 
 }  // namespace
 
-Wall::Wall(const Grid& grid, std::vector<Link> links, std::uint32_t regions)
-    : grid_(grid), links_(std::move(links)), back_(links_.size()), area_(regions, 0.0) {
+Wall::Wall(std::vector<Link> links, std::uint32_t regions)
+    : links_(std::move(links)), back_(links_.size()), area_(regions, 0.0) {
     for (std::size_t i = 0; i < links_.size(); ++i) {
         const Link& link = links_[i];
         if (stretches_.empty() || stretches_.back().region != link.region ||
@@ -31,7 +31,7 @@ Wall::Wall(const Grid& grid, std::vector<Link> links, std::uint32_t regions)
     }
 }
 
-void Wall::gather(const Populations& from, std::size_t stretch) {
+void Wall::gather(const Populations& from, float motion, std::size_t stretch) {
     Stretch& s = stretches_[stretch];
     Load load;
     for (std::size_t n = s.first; n < s.last; ++n) {
@@ -40,7 +40,8 @@ void Wall::gather(const Populations& from, std::size_t stretch) {
         const float* const f = from.at(i);
         const float out = f[link.cell];
         const float in = from.at(opposite(i))[link.cell];
-        const float back = link.weight[0] * out + link.weight[1] * in + link.weight[2] * f[link.far];
+        const float back =
+            link.weight[0] * out + link.weight[1] * in + link.weight[2] * f[link.far] + motion * link.wall;
         back_[n] = back;
 
         // Momentum exchange (Ladd 1994, J. Fluid Mech. 271): what went in and what came back, both along i.
@@ -67,8 +68,7 @@ void Wall::scatter(Populations& from, std::size_t stretch) const {
     const Stretch& s = stretches_[stretch];
     for (std::size_t n = s.first; n < s.last; ++n) {
         const Link& link = links_[n];
-        const int i = link.direction;
-        from.at(opposite(i))[static_cast<std::ptrdiff_t>(link.cell) + grid_.offset(i)] = back_[n];
+        from.at(opposite(link.direction))[link.into] = back_[n];
     }
 }
 

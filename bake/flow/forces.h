@@ -25,15 +25,16 @@ struct Load {
 
 class Wall {
 public:
-    Wall(const Grid& grid, std::vector<Link> links, std::uint32_t regions);
+    Wall(std::vector<Link> links, std::uint32_t regions);
 
     /// Work is shared out by stretches of links of one region, of a length that does not depend on the threads. Sums
     /// over a stretch go in the order of its links and the stretches are added in their order, so the bits are the
     /// same.
     std::size_t stretches() const { return stretches_.size(); }
 
-    /// Reads the populations and keeps what each link of a stretch sends back, and its load.
-    void gather(const Populations& from, std::size_t stretch);
+    /// Reads the populations and keeps what each link of a stretch sends back, and its load. `motion`: the share of its
+    /// speed that a moving wall has reached.
+    void gather(const Populations& from, float motion, std::size_t stretch);
     /// Writes what comes back where the cells will pull it from. After all of gather: both sides of a thin wall share
     /// cells.
     void scatter(Populations& from, std::size_t stretch) const;
@@ -53,7 +54,6 @@ private:
         Load load;
     };
 
-    const Grid grid_;
     std::vector<Link> links_;
     std::vector<float> back_;
     std::vector<Stretch> stretches_;

@@ -1,6 +1,8 @@
-// One time step of the bulk: pull the populations from the neighbours, collide, store. Knows nothing of walls.
+// The loops over cells: one time step of the bulk (pull the populations from the neighbours, collide, store), and the
+// two halves of it that blocks of different cell size exchange. Knows nothing of walls.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "bake/flow/lattice.h"
@@ -13,7 +15,23 @@ struct Collision {
     float push[3] = {};                 ///< velocity gained by the fluid in this step (the start-up's acceleration)
 };
 
-/// Row r of `to` from the neighbours in `from`. The row's ghosts are left with no meaning.
-void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision);
+/// Cells [first, last) of row r of `to` from the neighbours in `from`; ghosts among them are left with no meaning.
+void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, std::size_t first,
+                 std::size_t last, const Collision& collision);
+
+/// What blocks exchange of a cell: density less one, velocity, and stress over relaxation time (xx, yy, zz, xy, xz,
+/// yz), which is the rate of strain but for constants: smooth across a change of cell size, where populations are not.
+constexpr int field_count = 10;
+using Fields = std::array<float*, field_count>;
+using ConstFields = std::array<const float*, field_count>;
+
+/// Fields of `count` cells from (i, j, k) on along x, of the step that pulls from `from`. `relaxation` is one time.
+void observe(const Grid& grid, const Populations& from, int i, int j, int k, std::size_t count, float relaxation,
+             float smagorinsky, const Fields& fields);
+
+/// Populations after collision of cells with these fields, their strain times `scale` (the ratio of the time steps).
+/// out[i] takes those of direction i.
+void rebuild(const ConstFields& fields, std::size_t count, float scale, float relaxation, float smagorinsky,
+             const float* push, const std::array<float*, direction_count>& out);
 
 }  // namespace frm::bake::flow

@@ -1,4 +1,4 @@
-// The D3Q19 lattice, how its cells lie in memory, and the two copies of the populations a run works on.
+// The D3Q19 lattice, how the cells of one block lie in memory, and a copy of the populations in them.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@ constexpr int direction_count = 19;
 
 struct Direction {
     int x, y, z;
+    int along(int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
 };
 
 /// Rest first, then pairs of opposites whose first member has a positive first component.
@@ -29,39 +30,45 @@ constexpr std::array<Direction, direction_count> directions{{
 constexpr float weight(int i) { return i == 0 ? 1.0f / 3 : i < 7 ? 1.0f / 18 : 1.0f / 36; }
 constexpr int opposite(int i) { return i == 0 ? 0 : ((i - 1) ^ 1) + 1; }
 
-/// Cells in memory: rows along the stream, nx cells each, nx + 2 a multiple of 16. In a row, cell nx is the outlet's
-/// ghost; the inlet's ghost of a row is the last cell of the row before it, so that rows start aligned and neighbours
-/// along the stream are always one float away. Rows and layers of ghosts surround the box in y and z; a section has one
-/// layer without ghosts and a layer stride of zero, which makes it periodic across.
+/// One block's cells in memory: rows along the stream, ghosts all round. In a row, cell nx is the ghost behind; the
+/// ghost ahead is the last cell of the row before it, so that rows start aligned and neighbours along the stream are
+/// always one float away. A periodic block has no ghosts in z: its layers wrap around.
 struct Grid {
     static constexpr std::size_t lanes = 16;
 
     int nx = 0, ny = 0, nz = 0;
-    bool section = false;
+    bool periodic = false;
 
-    std::size_t pitch() const { return static_cast<std::size_t>(nx) + 2; }
+    std::size_t pitch() const { return (static_cast<std::size_t>(nx) + 2 + lanes - 1) / lanes * lanes; }
     std::ptrdiff_t stride_y() const { return static_cast<std::ptrdiff_t>(pitch()); }
-    std::ptrdiff_t stride_z() const { return section ? 0 : stride_y() * (ny + 2); }
+    std::ptrdiff_t stride_z() const { return stride_y() * (ny + 2); }
     std::size_t rows() const { return static_cast<std::size_t>(ny) * static_cast<std::size_t>(nz); }
-    std::size_t allocated_rows() const {
-        return static_cast<std::size_t>(ny + 2) * static_cast<std::size_t>(section ? 1 : nz + 2);
-    }
+    std::size_t layers() const { return static_cast<std::size_t>(periodic ? nz : nz + 2); }
+    std::size_t allocated_rows() const { return static_cast<std::size_t>(ny + 2) * layers(); }
     std::size_t allocated() const { return pitch() * allocated_rows(); }
     std::uint64_t cells() const { return static_cast<std::uint64_t>(nx) * rows(); }
+    int size(int axis) const { return axis == 0 ? nx : axis == 1 ? ny : nz; }
 
     std::size_t index(int i, int j, int k) const {
-        return static_cast<std::size_t>((section ? 0 : (k + 1) * stride_z()) + (j + 1) * stride_y() + i);
+        return static_cast<std::size_t>((periodic ? k : k + 1) * stride_z() + (j + 1) * stride_y() + i);
     }
-    std::ptrdiff_t offset(int direction) const {
+    int wrap(int k) const { return !periodic ? k : k < 0 ? k + nz : k >= nz ? k - nz : k; }
+    int layer_of(std::size_t cell) const {
+        const auto k = static_cast<int>(cell / static_cast<std::size_t>(stride_z()));
+        return periodic ? k : k - 1;
+    }
+    /// From a cell of layer k to its neighbour.
+    std::ptrdiff_t offset(int direction, int k) const {
         const Direction& c = directions[static_cast<std::size_t>(direction)];
-        return c.x + c.y * stride_y() + c.z * stride_z();
+        return c.x + c.y * stride_y() + (wrap(k + c.z) - k) * stride_z();
+    }
+    std::size_t neighbour(std::size_t cell, int direction) const {
+        return cell + static_cast<std::size_t>(offset(direction, layer_of(cell)));
     }
     /// First cell of a row, rows counted without ghosts.
-    std::size_t row(std::size_t r) const {
-        const auto j = static_cast<int>(r % static_cast<std::size_t>(ny));
-        const auto k = static_cast<int>(r / static_cast<std::size_t>(ny));
-        return index(0, j, k);
-    }
+    std::size_t row(std::size_t r) const { return index(0, row_y(r), row_z(r)); }
+    int row_y(std::size_t r) const { return static_cast<int>(r % static_cast<std::size_t>(ny)); }
+    int row_z(std::size_t r) const { return static_cast<int>(r / static_cast<std::size_t>(ny)); }
 };
 
 /// Populations after collision, as differences from the fluid at rest (f - w): fp32 keeps its digits for the flow, and
@@ -78,7 +85,7 @@ public:
     const float* at(int direction) const { return memory_.get() + offset(direction); }
 
     static std::size_t bytes(const Grid& grid) {
-        return (direction_count * stride(grid) + Grid::lanes) * sizeof(float);
+        return (direction_count * stride(grid) + 2 * Grid::lanes) * sizeof(float);
     }
 
 private:
@@ -87,7 +94,7 @@ private:
         void operator()(float* p) const { ::operator delete(p, alignment); }
     };
 
-    /// A row of slack before each direction, for the inlet ghost of the very first row; an odd number of cache lines
+    /// A row of slack before each direction, for the ghost ahead of the very first row; an odd number of cache lines
     /// apart, so that the 19 streams of a row do not fall on the same cache sets.
     static std::size_t stride(const Grid& grid) {
         const std::size_t lines = grid.allocated() / Grid::lanes + 2;

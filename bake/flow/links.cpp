@@ -47,14 +47,14 @@ double edge(const Sheared& a, const Sheared& b, double u, double v) {
 
 class Cutter {
 public:
-    explicit Cutter(const Domain& domain) : domain_(domain), grid_(domain.grid) {}
+    explicit Cutter(const Domain& domain) : domain_(domain), grid_(domain.finest()) {}
 
     void run() {
         // A link across the layer of a section has the same wall as its shadow in the plane.
         const int families[] = {1, 3, 7, 9, 5, 11, 13, 15, 17};
         for (const int family : families) {
             const Direction c = directions[static_cast<std::size_t>(family)];
-            if (grid_.section && c.z != 0) continue;
+            if (grid_.periodic && c.z != 0) continue;
             cast(c);
         }
         std::sort(hits_.begin(), hits_.end());
@@ -102,13 +102,16 @@ private:
 
     void record(const Direction& c, const int* node, double along, std::uint32_t triangle, bool front) {
         const double q = along - std::floor(along);
-        if (c.x == 1 && c.y == 0 && c.z == 0 && inside(node[1], node[2])) {
-            const auto row = static_cast<std::uint32_t>(node[2] * grid_.ny + node[1]);
-            crossings_.push_back({row, along, front ? -1 : 1});
+        if (c.x == 1 && c.y == 0 && c.z == 0) {
+            for (int k = low(node[2]); k <= high(node[2]); ++k) {
+                if (!inside(node[1], k)) continue;
+                const auto row = static_cast<std::uint32_t>(k * grid_.ny + node[1]);
+                crossings_.push_back({row, along, front ? -1 : 1});
+            }
         }
         for (int i = 1; i < direction_count; ++i) {
             const Direction& d = directions[static_cast<std::size_t>(i)];
-            const bool shadow = grid_.section && (d.x != 0 || d.y != 0);
+            const bool shadow = grid_.periodic && (d.x != 0 || d.y != 0);
             if (d.x == c.x && d.y == c.y && (shadow || d.z == c.z)) {
                 add(node[0], node[1], node[2], i, q, triangle);
                 add(node[0] + c.x, node[1] + c.y, node[2] + c.z, opposite(i), 1 - q, triangle);
@@ -117,9 +120,17 @@ private:
     }
 
     void add(int x, int y, int z, int direction, double q, std::uint32_t triangle) {
-        if (x < 0 || x >= grid_.nx || !inside(y, z)) return;
-        hits_.push_back({grid_.index(x, y, z), static_cast<std::uint8_t>(direction), static_cast<float>(q), triangle});
+        if (x < 0 || x >= grid_.nx) return;
+        for (int k = low(z); k <= high(z); ++k) {
+            if (!inside(y, k)) continue;
+            hits_.push_back(
+                {grid_.index(x, y, k), static_cast<std::uint8_t>(direction), static_cast<float>(q), triangle});
+        }
     }
+
+    /// The layers that a hit in layer z stands for: all of them in a section, whose walls go straight across.
+    int low(int z) const { return grid_.periodic ? 0 : z; }
+    int high(int z) const { return grid_.periodic ? grid_.nz - 1 : z; }
 
     bool inside(int y, int z) const { return y >= 0 && y < grid_.ny && z >= 0 && z < grid_.nz; }
 
@@ -165,7 +176,7 @@ std::uint64_t repair(const Grid& grid, const std::vector<char>& solid, const std
         for (std::uint32_t x = run.first; x < run.last; ++x) {
             const std::uint64_t inside = grid.row(run.row) + x;
             for (int i = 1; i < direction_count; ++i) {
-                const std::uint64_t cell = inside + static_cast<std::uint64_t>(grid.offset(i));
+                const std::uint64_t cell = grid.neighbour(inside, i);
                 if (solid[cell] != 0) continue;
                 const int back = opposite(i);
                 auto known = find(cell, back);
@@ -184,7 +195,7 @@ std::uint64_t repair(const Grid& grid, const std::vector<char>& solid, const std
 }  // namespace
 
 Body cut_links(const Domain& domain, const Regions& regions) {
-    const Grid& grid = domain.grid;
+    const Grid& grid = domain.finest();
     Cutter cutter(domain);
     cutter.run();
     std::vector<Hit>& hits = cutter.hits();
@@ -204,7 +215,7 @@ Body cut_links(const Domain& domain, const Regions& regions) {
         const auto found = std::lower_bound(hits.begin(), hits.end(), key);
         return found != hits.end() && found->cell == cell && found->direction == direction;
     };
-    const Vec3d mesh_origin = domain.origin / domain.plan.cell;
+    const Vec3d mesh_origin = domain.origin / domain.plan.cell + domain.node(0, 0, 0, 0);
     body.links.reserve(hits.size());
     for (const Hit& hit : hits) {
         if (solid[hit.cell] != 0) continue;
@@ -217,7 +228,8 @@ Body cut_links(const Domain& domain, const Regions& regions) {
         // the cell behind; where a wall is in between as well (a gap of one cell), plain half-way bounce-back (Ladd
         // 1994).
         const int back = opposite(hit.direction);
-        const auto behind = hit.cell + static_cast<std::uint64_t>(grid.offset(back));
+        const std::uint64_t behind = grid.neighbour(hit.cell, back);
+        link.into = grid.neighbour(hit.cell, hit.direction);
         if (hit.distance >= 0.5f) {
             link.weight[0] = 1 / (2 * hit.distance);
             link.weight[1] = 1 - link.weight[0];
@@ -234,9 +246,15 @@ Body cut_links(const Domain& domain, const Regions& regions) {
         const std::size_t line = hit.cell / grid.pitch();
         const auto layer = static_cast<std::size_t>(grid.ny + 2);
         const Vec3d node{static_cast<double>(hit.cell % grid.pitch()), static_cast<double>(line % layer) - 1,
-                         grid.section ? 0.0 : static_cast<double>(line / layer) - 1};
+                         grid.periodic ? 0.0 : static_cast<double>(line / layer) - 1};
         const double q = hit.distance;
-        const Vec3d arm = mesh_origin + node + Vec3d{q * d.x, q * d.y, grid.section ? 0.0 : q * d.z};
+        const Vec3d point = node + Vec3d{q * d.x, q * d.y, grid.periodic ? 0.0 : q * d.z};
+        const Vec3d arm = mesh_origin + point;
+        // A moving wall (the same source): 6 w c.u, shared like the other terms beyond half-way.
+        const Vec3d moves = cross(domain.spin, point - domain.spin_centre);
+        const double along = moves.x * d.x + moves.y * d.y + moves.z * d.z;
+        link.wall = static_cast<float>(-6 * static_cast<double>(weight(hit.direction)) * along *
+                                       (hit.distance >= 0.5f ? 0.5 / q : 1.0));
         for (int i = 0; i < 3; ++i) {
             link.normal[i] = static_cast<float>(area > 0 ? n[i] / area : 0);
             link.arm[i] = static_cast<float>(arm[i]);

@@ -1,0 +1,198 @@
+#include "bake/flow/refinement.h"
+
+#include <algorithm>
+
+namespace frm::bake::flow {
+namespace {
+
+/// Memory for the rows of one task: fields, rows between, and populations. A thread keeps its own.
+float* scratch(std::size_t count) {
+    thread_local std::vector<float> memory;
+    if (memory.size() < count) memory.resize(count);
+    return memory.data();
+}
+
+constexpr float inner_weight = 9.0f / 16, outer_weight = -1.0f / 16;
+
+float half_way(float a, float b, float c, float d) { return inner_weight * (b + c) + outer_weight * (a + d); }
+
+}  // namespace
+
+std::array<int, 3> Refinement::Face::at(int plane, int u_index, int v_index) const {
+    std::array<int, 3> p{};
+    p[static_cast<std::size_t>(axis)] = plane;
+    p[static_cast<std::size_t>(u)] = u_index;
+    p[static_cast<std::size_t>(v)] = v_index;
+    return p;
+}
+
+Refinement::Refinement(const Block& fine, const Block& coarse, float fine_relaxation, float coarse_relaxation,
+                       float smagorinsky)
+    : fine_(fine.grid),
+      coarse_(coarse.grid),
+      fine_relaxation_(fine_relaxation),
+      coarse_relaxation_(coarse_relaxation),
+      smagorinsky_(smagorinsky) {
+    for (int axis = 0; axis < (fine.grid.periodic ? 2 : 3); ++axis) {
+        add_face(fine, coarse, axis, false);
+        add_face(fine, coarse, axis, true);
+    }
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+        const Face& face = faces_[f];
+        for (int v = 0; v < face.nv; ++v) observe_tasks_.push_back({f, v});
+        for (int v = 0; v < face.fine_nv; ++v) fill_tasks_.push_back({f, v});
+        const int border = face.wraps ? 0 : 2;
+        for (int v = border; v < face.nv - border; ++v) restrict_tasks_.push_back({f, v});
+    }
+}
+
+void Refinement::add_face(const Block& fine, const Block& coarse, int axis, bool high) {
+    Face face;
+    face.axis = axis;
+    face.high = high;
+    face.u = axis == 0 ? 1 : 0;
+    face.v = axis == 2 ? 1 : 2;
+    face.wraps = fine.grid.periodic && face.v == 2;
+    // Index in the coarse block of the plane of ghosts below the fine block's first node.
+    const auto border = [&](int a) {
+        return (fine.first[static_cast<std::size_t>(a)] - 1) / 2 - coarse.first[static_cast<std::size_t>(a)];
+    };
+    const int n = fine.grid.size(axis);
+    face.fine = high ? n : -1;
+    face.fine_ring = high ? n - 2 : 1;
+    face.coarse = border(axis) + (high ? (n + 1) / 2 : 0);
+    face.ring = face.coarse + (high ? -1 : 1);
+    face.u_first = border(face.u) - 1;
+    face.nu = (fine.grid.size(face.u) + 1) / 2 + 3;
+    face.fine_nu = fine.grid.size(face.u) + 2;
+    if (face.wraps) {
+        face.nv = coarse.grid.nz;
+        face.fine_nv = fine.grid.nz;
+        face.v_scale = fine.grid.nz / coarse.grid.nz;
+    } else {
+        face.v_first = border(face.v) - 1;
+        face.nv = (fine.grid.size(face.v) + 1) / 2 + 3;
+        face.fine_nv = fine.grid.size(face.v) + 2;
+    }
+    std::size_t entering = 0;
+    for (int i = 1; i < direction_count; ++i) {
+        if (directions[static_cast<std::size_t>(i)].along(axis) == (high ? -1 : 1)) face.inward[entering++] = i;
+    }
+    const auto size = static_cast<std::size_t>(field_count) * static_cast<std::size_t>(face.nu) *
+                      static_cast<std::size_t>(face.nv);
+    for (std::vector<float>& fields : face.fields) fields.assign(size, 0);
+    faces_.push_back(std::move(face));
+}
+
+void Refinement::observe(const Populations& coarse, std::size_t task) {
+    Face& face = faces_[observe_tasks_[task].face];
+    const int v = observe_tasks_[task].v;
+    // Rows run along x but for the planes across it.
+    const int rows = face.axis == 0 ? face.nu : 1;
+    const auto count = static_cast<std::size_t>(face.axis == 0 ? 1 : face.nu);
+    for (int u = 0; u < rows; ++u) {
+        Fields fields{};
+        for (int f = 0; f < field_count; ++f) fields[static_cast<std::size_t>(f)] = face.row(newest_, f, v) + u;
+        const auto p = face.at(face.coarse, face.u_first + u, face.v_first + v);
+        flow::observe(coarse_, coarse, p[0], p[1], p[2], count, coarse_relaxation_, smagorinsky_, fields);
+    }
+}
+
+void Refinement::fill(Populations& fine, float share, const float* push, std::size_t task) const {
+    const Face& face = faces_[fill_tasks_[task].face];
+    const int v = fill_tasks_[task].v;
+    const auto nu = static_cast<std::size_t>(face.nu), fine_nu = static_cast<std::size_t>(face.fine_nu);
+    float* const line = scratch(nu + (field_count + direction_count) * fine_nu);
+    float* const fields = line + nu;
+    float* const rebuilt = fields + field_count * fine_nu;
+
+    // Coarse rows: one where the fine row lies on it, else the two on each side of it.
+    const bool between = face.v_scale == 2 && v % 2 == 1;
+    const int below = face.v_scale == 2 ? v / 2 : v;
+    int rows[4];
+    for (int n = 0; n < 4; ++n) {
+        const int r = below + n - 1;
+        rows[n] = face.wraps ? (r + 2 * face.nv) % face.nv : r + 1;
+    }
+    const float old_share = 1 - share;
+    ConstFields in{};
+    for (int f = 0; f < field_count; ++f) {
+        const auto blended = [&](int r, std::size_t u) {
+            return old_share * face.row(1 - newest_, f, r)[u] + share * face.row(newest_, f, r)[u];
+        };
+        if (between) {
+            const float *a0 = face.row(1 - newest_, f, rows[0]), *a1 = face.row(newest_, f, rows[0]);
+            const float *b0 = face.row(1 - newest_, f, rows[1]), *b1 = face.row(newest_, f, rows[1]);
+            const float *c0 = face.row(1 - newest_, f, rows[2]), *c1 = face.row(newest_, f, rows[2]);
+            const float *d0 = face.row(1 - newest_, f, rows[3]), *d1 = face.row(newest_, f, rows[3]);
+            for (std::size_t u = 0; u < nu; ++u) {
+                line[u] = old_share * half_way(a0[u], b0[u], c0[u], d0[u]) + share * half_way(a1[u], b1[u], c1[u], d1[u]);
+            }
+        } else {
+            for (std::size_t u = 0; u < nu; ++u) line[u] = blended(rows[1], u);
+        }
+        float* const out = fields + static_cast<std::size_t>(f) * fine_nu;
+        const std::size_t pairs = fine_nu / 2;
+        for (std::size_t u = 0; u < pairs; ++u) {
+            out[2 * u] = line[u + 1];
+            out[2 * u + 1] = half_way(line[u], line[u + 1], line[u + 2], line[u + 3]);
+        }
+        out[2 * pairs] = line[pairs + 1];
+        in[static_cast<std::size_t>(f)] = out;
+    }
+
+    std::array<float*, direction_count> out{};
+    for (std::size_t i = 0; i < direction_count; ++i) out[i] = rebuilt + i * fine_nu;
+    rebuild(in, fine_nu, 0.5f, fine_relaxation_, smagorinsky_, push, out);
+    const auto p = face.at(face.fine, -1, face.wraps ? v : v - 1);
+    const auto first = static_cast<std::ptrdiff_t>(fine_.index(p[0], p[1], p[2]));
+    const std::ptrdiff_t step = face.axis == 0 ? fine_.stride_y() : 1;
+    for (const int i : face.inward) {
+        float* const to = fine.at(i) + first;
+        const float* const f = out[static_cast<std::size_t>(i)];
+        for (std::size_t u = 0; u < fine_nu; ++u) to[static_cast<std::ptrdiff_t>(u) * step] = f[u];
+    }
+}
+
+void Refinement::restrict_to(Populations& coarse, const Populations& fine, const float* push,
+                             std::size_t task) const {
+    const Face& face = faces_[restrict_tasks_[task].face];
+    const int v = restrict_tasks_[task].v;  // of the coarse rows kept
+    const int fine_v = face.wraps ? v * face.v_scale : 2 * v - 3;
+    const auto read = static_cast<std::size_t>(face.fine_nu - 2), count = (read - 1) / 2;
+    float* const all = scratch(field_count * (read + count) + direction_count * count);
+    float* const kept = all + field_count * read;
+    float* const rebuilt = kept + field_count * count;
+
+    Fields fields{};
+    if (face.axis == 0) {
+        for (std::size_t u = 0; u < count; ++u) {
+            for (std::size_t f = 0; f < field_count; ++f) fields[f] = kept + f * count + u;
+            const auto p = face.at(face.fine_ring, static_cast<int>(2 * u + 1), fine_v);
+            flow::observe(fine_, fine, p[0], p[1], p[2], 1, fine_relaxation_, smagorinsky_, fields);
+        }
+    } else {
+        for (std::size_t f = 0; f < field_count; ++f) fields[f] = all + f * read;
+        const auto p = face.at(face.fine_ring, 0, fine_v);
+        flow::observe(fine_, fine, p[0], p[1], p[2], read, fine_relaxation_, smagorinsky_, fields);
+        for (std::size_t f = 0; f < field_count; ++f) {
+            for (std::size_t u = 0; u < count; ++u) kept[f * count + u] = fields[f][2 * u + 1];
+        }
+    }
+    ConstFields in{};
+    for (std::size_t f = 0; f < field_count; ++f) in[f] = kept + f * count;
+    std::array<float*, direction_count> out{};
+    for (std::size_t i = 0; i < direction_count; ++i) out[i] = rebuilt + i * count;
+    rebuild(in, count, 2.0f, coarse_relaxation_, smagorinsky_, push, out);
+    const auto p = face.at(face.ring, face.u_first + 2, face.v_first + v);
+    const auto first = static_cast<std::ptrdiff_t>(coarse_.index(p[0], p[1], p[2]));
+    const std::ptrdiff_t step = face.axis == 0 ? coarse_.stride_y() : 1;
+    for (const int i : face.inward) {
+        const int leaving = opposite(i);
+        float* const to = coarse.at(leaving) + first;
+        const float* const f = out[static_cast<std::size_t>(leaving)];
+        for (std::size_t u = 0; u < count; ++u) to[static_cast<std::ptrdiff_t>(u) * step] = f[u];
+    }
+}
+
+}  // namespace frm::bake::flow

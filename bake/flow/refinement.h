@@ -1,0 +1,76 @@
+// Where a block meets the next coarser one. The fine block's ghosts lie on planes of coarse nodes; the coarse block's
+// nodes one cell further in lie on fine nodes. What passes is density, velocity and rate of strain (kernel.h), from
+// which populations of the other cell size are rebuilt: the rescaling of Dupuis & Chopard 2003, Phys. Rev. E 67,
+// done on moments; cubic interpolation in the planes as in Lagrava et al. 2012, J. Comput. Phys. 231; linear in time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "bake/flow/domain.h"
+#include "bake/flow/kernel.h"
+#include "bake/flow/lattice.h"
+
+namespace frm::bake::flow {
+
+class Refinement {
+public:
+    /// Between two neighbours of a domain's blocks. Relaxation times are those of the molecular viscosity.
+    Refinement(const Block& fine, const Block& coarse, float fine_relaxation, float coarse_relaxation,
+               float smagorinsky);
+
+    // Each of the following is a number of independent tasks, so that threads can share them; no result depends on who
+    // does which.
+
+    /// Before observe: what was new is old.
+    void turn() { newest_ = 1 - newest_; }
+    std::size_t observe_tasks() const { return observe_tasks_.size(); }
+    /// Reads the coarse planes of the step that pulls from `coarse`.
+    void observe(const Populations& coarse, std::size_t task);
+
+    std::size_t fill_tasks() const { return fill_tasks_.size(); }
+    /// Fills the fine block's ghosts for the time `share` of a coarse step after the older of the two last planes.
+    void fill(Populations& fine, float share, const float* push, std::size_t task) const;
+
+    std::size_t restrict_tasks() const { return restrict_tasks_.size(); }
+    /// Writes the coarse nodes next inside the planes from the fine step that pulls from `fine`.
+    void restrict_to(Populations& coarse, const Populations& fine, const float* push, std::size_t task) const;
+
+private:
+    /// One of the six planes (four for a section) and how its nodes are counted: u along rows, v across them.
+    struct Face {
+        int axis = 0, u = 1, v = 2;
+        bool high = false;
+        bool wraps = false;             // v is the periodic axis
+        int coarse = 0, fine = 0;       // the plane, as index of either block
+        int ring = 0, fine_ring = 0;    // the coarse nodes written by restriction
+        int u_first = 0, v_first = 0;   // first coarse node kept of the plane
+        int nu = 0, nv = 0;             // coarse nodes kept, a node more on each side than the fine block needs
+        int fine_nu = 0, fine_nv = 0;   // fine nodes of the plane, its borders included
+        int v_scale = 2;                // fine nodes a coarse one along v (1: two dimensions)
+        std::array<int, 5> inward{};    // directions that enter the fine block
+        std::array<std::vector<float>, 2> fields;
+
+        float* row(int time, int field, int v) {
+            return fields[static_cast<std::size_t>(time)].data() +
+                   (static_cast<std::ptrdiff_t>(field) * nv + v) * nu;
+        }
+        const float* row(int time, int field, int v) const { return const_cast<Face*>(this)->row(time, field, v); }
+        std::array<int, 3> at(int plane, int u_index, int v_index) const;
+    };
+    struct Task {
+        std::size_t face;
+        int v;
+    };
+
+    void add_face(const Block& fine, const Block& coarse, int axis, bool high);
+
+    Grid fine_, coarse_;
+    float fine_relaxation_, coarse_relaxation_, smagorinsky_;
+    std::vector<Face> faces_;
+    std::vector<Task> observe_tasks_, fill_tasks_, restrict_tasks_;
+    int newest_ = 0;
+};
+
+}  // namespace frm::bake::flow
