@@ -16,17 +16,18 @@ float equilibrium(int i, float excess, float ux, float uy, float uz) {
 
 }  // namespace
 
-std::array<float, direction_count> stream_populations(float speed) {
+std::array<float, direction_count> stream_populations(const std::array<float, 3>& velocity) {
     std::array<float, direction_count> f{};
-    for (int i = 0; i < direction_count; ++i) f[static_cast<std::size_t>(i)] = equilibrium(i, 0, speed, 0, 0);
+    for (int i = 0; i < direction_count; ++i) {
+        f[static_cast<std::size_t>(i)] = equilibrium(i, 0, velocity[0], velocity[1], velocity[2]);
+    }
     return f;
 }
 
-void fill_stream(const Grid& grid, Populations& populations, float speed) {
-    const auto f = stream_populations(speed);
+void fill_stream(const Grid& grid, Populations& populations, const std::array<float, direction_count>& stream) {
     const std::size_t pitch = grid.pitch(), lines = static_cast<std::size_t>(grid.ny) + 2;
     for (int i = 0; i < direction_count; ++i) {
-        const float value = f[static_cast<std::size_t>(i)];
+        const float value = stream[static_cast<std::size_t>(i)];
         float* const p = populations.at(i);
         p[-1] = value;
         for (std::size_t r = 0; r < grid.allocated_rows(); ++r) {

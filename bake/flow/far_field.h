@@ -9,15 +9,15 @@
 
 namespace frm::bake::flow {
 
-/// Populations of the fluid at rest density in a stream of a given speed along x, less the fluid at rest.
-std::array<float, direction_count> stream_populations(float speed);
+/// Populations of a uniform stream of the fluid's density at rest, less those of the fluid at rest.
+std::array<float, direction_count> stream_populations(const std::array<float, 3>& velocity);
 
 /// Fills the ghosts that hold the stream: rows and layers beside the box and the inlet of every row.
 ///
 /// Populations that enter are those of the undisturbed stream, those that leave are lost. To first order that is the
 /// characteristic condition, so sound leaves through inlet and sides; for the flow proper the sides are walls that move
 /// with the stream and give way a little.
-void fill_stream(const Grid& grid, Populations& populations, float speed);
+void fill_stream(const Grid& grid, Populations& populations, const std::array<float, direction_count>& stream);
 
 /// Puts back the two ghosts of a row after the collision has run over them: the inlet's holds the stream; the outlet's
 /// is the equilibrium of the last cell, its density drawn a little to the stream's so that the level of pressure cannot

@@ -49,8 +49,9 @@ Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int th
                     run.last - run.first, char{1});
     }
     for (std::size_t r = 0; r < finest.rows(); ++r) solid_begin_[r + 1] += solid_begin_[r];
-    fill_stream(levels_.back().grid, *levels_.back().from, 0);
-    fill_stream(levels_.back().grid, *levels_.back().to, 0);
+    const auto rest = stream_populations(stream(0));
+    fill_stream(levels_.back().grid, *levels_.back().from, rest);
+    fill_stream(levels_.back().grid, *levels_.back().to, rest);
 }
 
 double Nest::ramp(double step) const {
@@ -67,12 +68,16 @@ double Nest::sway(double step) const {
 
 /// The stream is speeded up everywhere at once by pushing the fluid as a whole, which is how water looks from a body
 /// that starts to move: pressure stays smooth, where an inlet that speeds up would send waves through the box.
+std::array<float, 3> Nest::stream(std::uint64_t step) const {
+    const auto now = static_cast<double>(step);
+    const double across = domain_.stream_speed * sway(now);
+    return {static_cast<float>(domain_.stream_speed * ramp(now)), static_cast<float>(sway_y * across),
+            domain_.finest().nz == 1 ? 0.0f : static_cast<float>(sway_z * across)};
+}
+
 void Nest::set_push(Level& level, std::uint64_t steps) const {
-    const auto now = static_cast<double>(level.step), then = static_cast<double>(level.step + steps);
-    const double speed = domain_.stream_speed, across = speed * (sway(then) - sway(now));
-    level.collision.push[0] = static_cast<float>(speed * (ramp(then) - ramp(now)));
-    level.collision.push[1] = static_cast<float>(sway_y * across);
-    level.collision.push[2] = domain_.finest().nz == 1 ? 0.0f : static_cast<float>(sway_z * across);
+    const std::array<float, 3> now = stream(level.step), then = stream(level.step + steps);
+    for (std::size_t i = 0; i < 3; ++i) level.collision.push[i] = then[i] - now[i];
 }
 
 void Nest::advance(const std::function<void(std::uint64_t)>& after_step) {
@@ -109,8 +114,7 @@ void Nest::advance_level(std::size_t l) {
         level.step += std::uint64_t{1} << l;
         level.second = !level.second;
         if (outermost && level.step <= domain_.ramp_steps + 2 * steps_at_once()) {
-            fill_stream(level.grid, *level.to,
-                        static_cast<float>(domain_.stream_speed * ramp(static_cast<double>(level.step))));
+            fill_stream(level.grid, *level.to, stream_populations(stream(level.step)));
         }
         std::swap(level.from, level.to);
         // restrict_to needs the push of the step that this was, so the coarser blocks wait with theirs.
@@ -144,15 +148,14 @@ void Nest::bulk(std::size_t l) {
     Level& level = levels_[l];
     const Grid& grid = level.grid;
     const bool outermost = l + 1 == levels_.size();
-    const auto stream = stream_populations(static_cast<float>(
-        domain_.stream_speed * ramp(static_cast<double>(level.step + (std::uint64_t{1} << l)))));
+    const auto far = stream_populations(stream(level.step + (std::uint64_t{1} << l)));
     const auto rows = static_cast<std::ptrdiff_t>(grid.rows());
 #pragma omp for schedule(dynamic, 16)
     for (std::ptrdiff_t n = 0; n < rows; ++n) {
         const auto r = static_cast<std::size_t>(n);
         collide_row(grid, *level.from, *level.to, r, 0, grid.pitch(), level.collision);
         if (l == 0) empty_solid(r);
-        if (outermost) close_row(grid, *level.to, r, stream, domain_.stream_speed > 0);
+        if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
     }
 }
 

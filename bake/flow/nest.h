@@ -58,6 +58,7 @@ private:
     void empty_solid(std::size_t row);
     double ramp(double step) const;
     double sway(double step) const;
+    std::array<float, 3> stream(std::uint64_t step) const;
     void set_push(Level& level, std::uint64_t steps) const;
 
     const Domain& domain_;

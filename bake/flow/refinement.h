@@ -52,12 +52,12 @@ private:
         std::array<int, 5> inward{};    // directions that enter the fine block
         std::array<std::vector<float>, 2> fields;
 
-        float* row(int time, int field, int v) {
+        float* row(int time, int field, int n) {
             return fields[static_cast<std::size_t>(time)].data() +
-                   (static_cast<std::ptrdiff_t>(field) * nv + v) * nu;
+                   (static_cast<std::ptrdiff_t>(field) * nv + n) * nu;
         }
-        const float* row(int time, int field, int v) const { return const_cast<Face*>(this)->row(time, field, v); }
-        std::array<int, 3> at(int plane, int u_index, int v_index) const;
+        const float* row(int time, int field, int n) const { return const_cast<Face*>(this)->row(time, field, n); }
+        std::array<int, 3> at(int plane, int along_u, int along_v) const;
     };
     struct Task {
         std::size_t face;
