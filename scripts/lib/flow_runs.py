@@ -1,0 +1,131 @@
+"""Runs cases of the flow and keeps what they gave, so that a run that was stopped goes on where it was."""
+from __future__ import annotations
+
+import datetime
+import hashlib
+import json
+import os
+import pathlib
+import subprocess
+import time
+
+from flow_cases import mesh_of
+
+# What the numbers depend on. A case is measured again when one of these changes by more than a line of comment.
+SOLVER = ("bake/flow/*.h", "bake/flow/*.cpp", "bake/mesh/*.h", "bake/mesh/*.cpp", "bake/series/spectrum.*",
+          "cli/flow.cpp")
+
+
+def solver_sources(root):
+    return sorted(path for pattern in SOLVER for path in pathlib.Path(root).glob(pattern))
+
+
+def solver_version(root):
+    """A hash of the solver's sources, without the lines that are only a comment and the space at the ends of lines."""
+    digest = hashlib.sha256()
+    for path in solver_sources(root):
+        lines = [line.strip() for line in path.read_text().splitlines()]
+        kept = [line for line in lines if line and not line.startswith("//")]
+        digest.update("\n".join([path.relative_to(root).as_posix(), *kept, ""]).encode())
+    return digest.hexdigest()[:16]
+
+
+def write_whole(path, content):
+    """The file is the old one or the new one, never a part, whenever this process ends."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(path.name + ".part")
+    with open(part, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(part, path)
+
+
+def machine():
+    model = "unknown processor"
+    try:
+        with open("/proc/cpuinfo") as lines:
+            model = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        pass
+    return f"{model}, {len(os.sched_getaffinity(0))} cores"
+
+
+def commit(root):
+    """The commit that is checked out; "+" when the solver's sources are not the commit's."""
+    def git(*words):
+        return subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True)
+    name = git("rev-parse", "--short=12", "HEAD")
+    if name.returncode:
+        return "no git"
+    changed = git("status", "--porcelain", "--", *{str(path.relative_to(root)) for path in solver_sources(root)})
+    return name.stdout.strip() + ("+" if changed.stdout.strip() else "")
+
+
+class Stopped(Exception):
+    """The program was told to stop; the case is not done."""
+
+
+class Runs:
+    def __init__(self, out, program, root):
+        self.out, self.program = pathlib.Path(out), program
+        self.solver, self.commit, self.machine = solver_version(root), commit(root), machine()
+        self.meshes = {}
+
+    def mesh(self, case):
+        """The hash of the case's mesh; the mesh is in its place."""
+        if case.body not in self.meshes:
+            content, path = mesh_of(case.body), self.out / case.mesh
+            if not path.is_file() or path.read_bytes() != content:
+                write_whole(path, content)
+            self.meshes[case.body] = hashlib.sha256(content).hexdigest()
+        return self.meshes[case.body]
+
+    def path(self, case):
+        return self.out / "cases" / (case.name + ".json")
+
+    def load(self, case):
+        """What the case gave with this solver, mesh and command line, or None."""
+        try:
+            record = json.loads(self.path(case).read_text())
+        except (OSError, ValueError):
+            return None
+        same = (record.get("solver") == self.solver and record.get("command") == case.command()
+                and record.get("mesh_sha256") == self.mesh(case))
+        return record if same else None
+
+    def run(self, case, longest):
+        """Runs the case for `longest` seconds at most and keeps what it gave, or why it failed."""
+        record = {"name": case.name, "command": case.command(), "mesh_sha256": self.mesh(case), "solver": self.solver,
+                  "commit": self.commit, "machine": self.machine,
+                  "started": datetime.datetime.now().astimezone().isoformat(timespec="seconds")}
+        began = time.monotonic()
+        try:
+            done = subprocess.run([str(self.program), *case.command()], cwd=self.out, capture_output=True, text=True,
+                                  errors="replace", timeout=longest, stdin=subprocess.DEVNULL)
+            record.update(self.outcome(done))
+        except subprocess.TimeoutExpired:
+            record["error"] = f"not done after {longest:g} s"
+        except OSError as error:
+            record["error"] = f"{self.program}: {error.strerror}"
+        record["wall_seconds"] = round(time.monotonic() - began, 3)
+        write_whole(self.path(case), json.dumps(record, indent=2).encode() + b"\n")
+        return record
+
+    @staticmethod
+    def outcome(done):
+        lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+        notes = [line.removeprefix("note: ") for line in lines if line.startswith("note: ")]
+        said = "; ".join(line for line in lines if not line.startswith("note: "))[-500:]
+        if done.returncode:
+            how = f"signal {-done.returncode}" if done.returncode < 0 else f"exit status {done.returncode}"
+            return {"notes": notes, "error": f"{how}: {said}" if said else how}
+        try:
+            result = json.loads(done.stdout)
+        except ValueError:
+            result = None
+        if not isinstance(result, dict):
+            return {"notes": notes, "error": "what it printed is not a JSON object"}
+        if result.get("ending") == "cancelled":
+            raise Stopped
+        return {"notes": notes, "result": result}
