@@ -173,7 +173,8 @@ void run(Options& o, bool section) {
         j["cd"] = r.cd;
         j["cl"] = r.cl;
         j["cl_rms"] = r.cl_rms;
-        j["strouhal"] = r.strouhal > 0 ? nlohmann::ordered_json(r.strouhal) : nlohmann::ordered_json();
+        j["parts"]={flow.uncertainty.grid,flow.uncertainty.statistics,flow.uncertainty.blockage};j["coarse"]=flow.coarse_drag;
+j["strouhal"] = r.strouhal > 0 ? nlohmann::ordered_json(r.strouhal) : nlohmann::ordered_json();
         j["uncertainty"] = flow.uncertainty.total();
         j["blockage"] = plan.blockage;
         j["cells"] = plan.cells;
@@ -212,7 +213,6 @@ void add_flow(CLI::App& app) {
     add_direction(*command, "--direction", o.direction, "where the water goes, in the mesh's frame")->required();
     command->add_option("--speed", o.flow.speed, "of the stream, m/s")
         ->required()
-        ->check(stream_speed_range())
         ->type_name("N");
     command->add_option("--viscosity", o.flow.viscosity, "kinematic, m^2/s")
         ->check(viscosity_range())
@@ -251,6 +251,10 @@ void add_flow(CLI::App& app) {
     command->add_option("-o,--out", o.out, "write the series to this CSV file (default: standard output)")
         ->check(not_empty())
         ->type_name("FILE");
+    command->add_option("--turn", o.flow.turn, "t");
+    command->add_option("--slab", o.flow.slab, "t");
+    command->add_option("--sp", o.flow.spin.z, "t");
+    command->add_flag("--ge", o.flow.grid_error, "t");
     command->add_flag("--json", o.json, "means and coefficients as JSON on standard output, no series there");
     command->callback([options, section] { run(*options, section->count() > 0); });
 }

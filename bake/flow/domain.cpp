@@ -22,6 +22,7 @@ constexpr double most_viscosity = 0.2, least_speed = 1e-3;
 constexpr double sample_rate = 32;  // samples while the stream travels one reference length
 constexpr std::uint64_t most_steps = 50'000'000;
 constexpr double sponge_share = 0.12;      // of the coarsest block's length
+constexpr double settling = 2;  // lengths until the fine grid has forgotten what it started from
 constexpr double most_normal_flow = 0.05;  // share of a spinning wall's speed
 
 std::string number(double v) {
@@ -264,6 +265,16 @@ void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
 
 }  // namespace
 
+bool starts_coarse(const FlowCase& c) { return c.grid_error && c.resolution >= 8; }
+
+FlowCase coarser(const FlowCase& c) {
+    FlowCase coarse = c;
+    coarse.grid_error = false;
+    coarse.resolution = 0.5 * c.resolution;
+    coarse.seconds = 0.4 * c.seconds;
+    return coarse;
+}
+
 Domain plan_domain(const Surface& surface, const FlowCase& c) {
     check(c);
     check(surface);
@@ -364,10 +375,15 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
                         " steps; lower duration or resolution");
     }
     d.interval_steps = static_cast<std::uint32_t>(interval);
-    d.start_steps = static_cast<std::uint32_t>(start);
+    d.start_steps = static_cast<std::uint64_t>(start);
     d.samples = static_cast<std::uint32_t>(count);
-    d.ramp_steps = static_cast<std::uint32_t>(std::ceil(std::min(2.0, c.start_up / 3) * per_length));
-    plan.steps = d.start_steps + std::uint64_t{d.interval_steps} * d.samples + 1;
+    d.ramp_steps = static_cast<std::uint64_t>(std::ceil(std::min(2.0, c.start_up / 3) * per_length));
+    if (starts_coarse(c)) {
+        const std::uint64_t at_once = std::uint64_t{1} << (d.blocks.size() - 1);
+        d.first_step = (d.ramp_steps + at_once - 1) / at_once * at_once;
+        d.start_steps = d.first_step + static_cast<std::uint64_t>(std::ceil(std::min(settling, c.start_up) * per_length));
+    }
+    plan.steps = d.start_steps - d.first_step + std::uint64_t{d.interval_steps} * d.samples + 1;
     plan.updates = static_cast<double>(finest_steps_of_cells) * static_cast<double>(plan.steps);
     // Two copies of the populations, a flag a finest cell, and some two hundred bytes for each cell of the body's
     // surface.

@@ -50,7 +50,10 @@ struct Domain {
     double radius = 0;          ///< largest distance from the spin's axis, m
     Vec3d spin;                 ///< stream's frame, radians a finest step
     Vec3d spin_centre;          ///< finest cells from node (0, 0, 0) of the finest block
-    std::uint32_t ramp_steps = 0, start_steps = 0, interval_steps = 0, samples = 0;
+    /// The clock's first step (beyond the ramp where the flow starts from another run's), when the ramp of the stream
+    /// ends, and when the series begins.
+    std::uint64_t first_step = 0, ramp_steps = 0, start_steps = 0;
+    std::uint32_t interval_steps = 0, samples = 0;
     Walls walls;
 
     int levels() const { return static_cast<int>(blocks.size()); }
@@ -63,6 +66,10 @@ struct Domain {
         return {s * (f[0] + i), s * (f[1] + j), s * (f[2] + k)};
     }
 };
+
+/// The run on half the resolution that tells the grid's error and gives the finer one its start; whether there is one.
+FlowCase coarser(const FlowCase& flow_case);
+bool starts_coarse(const FlowCase& flow_case);
 
 /// Checks surface and case and plans the blocks; allocates nothing of the flow's size. Throws BakeError.
 Domain plan_domain(const Surface& surface, const FlowCase& flow_case);

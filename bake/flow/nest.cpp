@@ -170,6 +170,100 @@ void Nest::empty_solid(std::size_t row) {
     }
 }
 
+bool Nest::sample(const Vec3d& point, std::array<float, field_count>& fields) const {
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        const Level& level = levels_[l];
+        const Grid& grid = level.grid;
+        const double cell = static_cast<double>(std::uint64_t{1} << l);
+        int low[3];
+        double part[3];
+        bool inside = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int size = grid.size(axis);
+            double at = point[axis] / cell - domain_.blocks[l].first[static_cast<std::size_t>(axis)];
+            if (axis == 2 && grid.periodic) at -= size * std::floor(at / size);
+            low[axis] = static_cast<int>(std::floor(at));
+            part[axis] = at - low[axis];
+            if (axis == 2 && grid.periodic) continue;
+            if (low[axis] == size - 1 && part[axis] == 0) low[axis] = size - 2, part[axis] = 1;
+            inside = inside && low[axis] >= 0 && low[axis] + 1 < size;
+        }
+        if (!inside) continue;
+        std::array<float, field_count> one{};
+        Fields out{};
+        for (std::size_t f = 0; f < field_count; ++f) out[f] = &one[f];
+        double sum[field_count] = {}, weights = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            double share = 1;
+            int at[3];
+            for (int axis = 0; axis < 3; ++axis) {
+                const int step = (corner >> axis) & 1;
+                share *= step == 1 ? part[axis] : 1 - part[axis];
+                at[axis] = low[axis] + step;
+            }
+            if (share == 0) continue;
+            at[2] = grid.wrap(at[2]);
+            if (l == 0 && is_solid_[grid.index(at[0], at[1], at[2])] != 0) continue;
+            // The copy not in use is that of the step before, walls included: what this step pulled from.
+            observe(grid, *level.to, at[0], at[1], at[2], 1, static_cast<float>(domain_.relaxation(static_cast<int>(l))),
+                    smagorinsky, out);
+            for (std::size_t f = 0; f < field_count; ++f) sum[f] += share * static_cast<double>(one[f]);
+            weights += share;
+        }
+        if (weights == 0) return false;
+        for (std::size_t f = 0; f < field_count; ++f) {
+            fields[f] = static_cast<float>(sum[f] / weights / (f < 4 ? 1.0 : cell));
+        }
+        return true;
+    }
+    return false;
+}
+
+void Nest::set(const Source& source) {
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        Level& level = levels_[l];
+        const Grid& grid = level.grid;
+        level.step = domain_.first_step;
+        set_push(level, std::uint64_t{1} << l);
+        const auto relaxation = static_cast<float>(domain_.relaxation(static_cast<int>(l)));
+        const int border = l + 1 == levels_.size() ? 0 : 1, border_z = grid.periodic ? 0 : border;
+        const float none[3] = {};
+#pragma omp parallel for num_threads(threads_) schedule(dynamic, 1)
+        for (int k = -border_z; k < grid.nz + border_z; ++k) {
+            std::array<float, field_count> fields{};
+            std::array<float, direction_count> f{};
+            ConstFields in{};
+            for (std::size_t n = 0; n < field_count; ++n) in[n] = &fields[n];
+            std::array<float*, direction_count> out{};
+            for (std::size_t n = 0; n < direction_count; ++n) out[n] = &f[n];
+            for (int j = -border; j < grid.ny + border; ++j) {
+                for (int i = -border; i < grid.nx + border; ++i) {
+                    const std::size_t cell = grid.index(i, j, k);
+                    if (l == 0 && i >= 0 && j >= 0 && k >= 0 && i < grid.nx && j < grid.ny && k < grid.nz &&
+                        is_solid_[cell] != 0) {
+                        continue;
+                    }
+                    source(domain_.node(static_cast<int>(l), i, j, k), fields);
+                    rebuild(in, 1, static_cast<float>(std::uint64_t{1} << l), relaxation, smagorinsky, none, out);
+                    for (int d = 0; d < direction_count; ++d) {
+                        level.from->at(d)[cell] = level.to->at(d)[cell] = f[static_cast<std::size_t>(d)];
+                    }
+                }
+            }
+        }
+        if (l + 1 == levels_.size()) {
+            const auto far = stream_populations(stream(level.step));
+            for (Populations* p : {level.from.get(), level.to.get()}) {
+                fill_stream(grid, *p, far);
+                for (std::size_t r = 0; r < grid.rows(); ++r) close_row(grid, *p, r, far, domain_.stream_speed > 0);
+            }
+        }
+    }
+    for (std::size_t l = 0; l < refinements_.size(); ++l) {
+        for (std::size_t n = 0; n < refinements_[l].observe_tasks(); ++n) refinements_[l].observe(*levels_[l + 1].to, n);
+    }
+}
+
 std::uint64_t Nest::unsound() const {
     std::uint64_t bad = 0;
     for (const Level& level : levels_) {

@@ -33,14 +33,13 @@ public:
     /// there.
     std::uint64_t unsound() const;
 
-    /// Moments of the last step at a point in finest cells from the lattice's origin, of the finest block that has it,
-    /// linear between nodes; `strain_step` is that block's cell in finest cells. False outside all of them and beside
-    /// solid cells.
-    bool sample(const Vec3d& point, std::array<float, field_count>& fields, int& level) const;
+    /// Fields (kernel.h) of the last step at a point in finest cells from the lattice's origin, of the finest block that
+    /// has it, linear between nodes; strain per step of the finest block. False outside all blocks and inside the body.
+    bool sample(const Vec3d& point, std::array<float, field_count>& fields) const;
 
-    /// Sets every cell from `source(point, fields, scale)`, which fills the fields and the factor of their strain; the
-    /// clock goes to that of a run whose start is over.
-    void set(const std::function<bool(const Vec3d&, int level, std::array<float, field_count>&)>& source);
+    /// Sets every cell to what `source` says of its place (as `sample`); the clock stands at Domain::first_step then.
+    using Source = std::function<void(const Vec3d& point, std::array<float, field_count>& fields)>;
+    void set(const Source& source);
 
 private:
     struct Level {

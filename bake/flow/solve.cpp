@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
@@ -29,6 +30,7 @@ using Clock = std::chrono::steady_clock;
 // cube at Re 1e4).
 constexpr double blockage_factor = 1.8, section_blockage_factor = 0;
 constexpr double least_statistics = 1e-3;
+constexpr double grid_share = 0.5;  // of the difference to the run on half the resolution
 constexpr std::uint64_t guard_steps = 64;
 constexpr double progress_seconds = 0.3;
 constexpr double least_record = 5, check_every = 0.5;  // lengths: of a confidence that counts, and between looks at it
@@ -46,7 +48,9 @@ double seconds_since(Clock::time_point then) { return std::chrono::duration<doub
 
 class Run {
 public:
-    Run(const Domain& domain, const Regions& regions, const FlowCase& c, const FlowProgress& progress)
+    /// `before`, `after`: cell updates of other runs that count in the progress shown.
+    Run(const Domain& domain, const Regions& regions, const FlowCase& c, const FlowProgress& progress, double before,
+        double after)
         : domain_(domain),
           case_(c),
           progress_(progress),
@@ -56,10 +60,30 @@ public:
           loads_(regions.count),
           before_(regions.count),
           sample_(regions.count),
+          before_updates_(before),
+          after_updates_(after),
           started_(Clock::now()) {
         if (wall_.stretches() == 0) {
             throw BakeError("flow: the lattice does not meet the body; raise resolution or check the surface's scale");
         }
+    }
+
+    /// Goes on from the flow of another run of the same case, on other cells.
+    void start_from(const Run& other) {
+        const Domain &d = domain_, &o = other.domain_;
+        const double cells = d.plan.cell / o.plan.cell;
+        const auto speed = static_cast<float>(d.lattice_speed / o.lattice_speed);
+        const Vec3d shift = (d.origin - o.origin) / o.plan.cell;
+        nest_.set([&](const Vec3d& point, std::array<float, field_count>& fields) {
+            fields.fill(0);
+            if (!other.nest_.sample(shift + point * cells, fields)) {
+                fields[1] = static_cast<float>(o.stream_speed);
+            }
+            fields[0] *= speed * speed;
+            for (std::size_t i = 1; i < 4; ++i) fields[i] *= speed;
+            for (std::size_t i = 4; i < field_count; ++i) fields[i] *= speed * static_cast<float>(cells);
+        });
+        guarded_ = nest_.step();
     }
 
     FlowSeries solve() {
@@ -189,7 +213,9 @@ private:
 
     FlowState state() const {
         FlowState s;
-        s.share = std::min(1.0, static_cast<double>(nest_.step()) / static_cast<double>(domain_.plan.steps));
+        const double done = before_updates_ + share_done() * domain_.plan.updates;
+        s.share = done / (before_updates_ + domain_.plan.updates + after_updates_);
+        s.coarse = after_updates_ > 0;
         s.recording = !measure_.empty();
         const double coefficient = s.recording ? mean(measure_) : shown_;
         s.drag_coefficient = spins_alone() ? torque_coefficient(coefficient) : drag_coefficient(coefficient);
@@ -204,6 +230,11 @@ private:
             s.seconds_left = s.seconds_left < 0 ? limit : std::min(s.seconds_left, limit);
         }
         return s;
+    }
+
+    double share_done() const {
+        const auto steps = static_cast<double>(nest_.step() - domain_.first_step);
+        return std::min(1.0, steps / static_cast<double>(domain_.plan.steps));
     }
 
     double drag_coefficient(double force) const {
@@ -230,8 +261,7 @@ private:
             average != 0 ? std::max(least_statistics, standard_error(measure_) / std::abs(average)) : 1;
         series_.uncertainty.blockage = std::max(1e-3, 0.5 * blockage_share(cd));
         series_.seconds = seconds_since(started_);
-        const double share = static_cast<double>(nest_.step()) / static_cast<double>(domain_.plan.steps);
-        series_.mlups = domain_.plan.updates * share / series_.seconds * 1e-6;
+        series_.mlups = domain_.plan.updates * share_done() / series_.seconds * 1e-6;
     }
 
     const Domain& domain_;
@@ -244,10 +274,48 @@ private:
     std::vector<double> measure_;  // the quantity, a value a sample, in lattice units
     std::vector<Load> loads_, before_, sample_;
     double now_ = 0, shown_ = 0, checked_ = 0, known_ = 1;
+    double before_updates_, after_updates_;
     bool met_ = false;
     std::uint64_t guarded_ = 0;
     Clock::time_point started_, reported_;
 };
+
+/// The mean drag, or the torque where only spin drives the flow.
+double mean_quantity(const FlowSeries& s, const FlowCase& c) {
+    double sum = 0;
+    if (c.speed == 0) {
+        const Vec3d axis = c.spin / length(c.spin);
+        for (std::size_t i = 0; i < s.torque.size(); ++i) {
+            sum -= static_cast<double>(s.torque[i]) * axis[static_cast<int>(i % 3)];
+        }
+    } else {
+        for (std::size_t i = 0; i < s.pressure.size(); ++i) {
+            sum += static_cast<double>(s.pressure[i] + s.friction[i]) * c.direction[static_cast<int>(i % 3)];
+        }
+    }
+    return sum / std::max(s.samples, 1u);
+}
+
+FlowSeries solve_twice(const Surface& surface, const Regions& regions, const Domain& domain, const FlowCase& c,
+                       const FlowProgress& progress) {
+    const Clock::time_point started = Clock::now();
+    const FlowCase half = coarser(c);
+    const Domain coarse_domain = plan_domain(surface, half);
+    auto coarse = std::make_unique<Run>(coarse_domain, regions, half, progress, 0, domain.plan.updates);
+    FlowSeries first = coarse->solve();
+    if (first.ending == FlowEnding::cancelled) return first;
+    FlowCase rest = c;
+    if (c.seconds > 0) rest.seconds = std::max(1e-3, c.seconds - seconds_since(started));
+    Run run(domain, regions, rest, progress, coarse_domain.plan.updates, 0);
+    run.start_from(*coarse);
+    coarse.reset();
+    FlowSeries series = run.solve();
+    series.coarse_drag = mean_quantity(first, c);
+    const double fine = mean_quantity(series, c);
+    if (fine != 0) series.uncertainty.grid = grid_share * std::abs(1 - series.coarse_drag / fine);
+    series.seconds = seconds_since(started);
+    return series;
+}
 
 }  // namespace
 }  // namespace flow
@@ -281,7 +349,8 @@ FlowSeries solve_flow(const Surface& surface, const Regions& regions, const Flow
                         " MiB more than memory_limit leaves; lower duration");
     }
     try {
-        return flow::Run(domain, regions, flow_case, progress).solve();
+        if (!flow::starts_coarse(flow_case)) return flow::Run(domain, regions, flow_case, progress, 0, 0).solve();
+        return flow::solve_twice(surface, regions, domain, flow_case, progress);
     } catch (const std::bad_alloc&) {
         throw BakeError("flow: out of memory; " + std::to_string(domain.plan.bytes >> 20) +
                         " MiB are needed: lower resolution");
