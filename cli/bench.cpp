@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "bake/flow/speed.h"
 #include "bake/map/formula.h"
 #include "bake/regions/tessellate.h"
 #include "cli/command.h"
@@ -123,13 +124,20 @@ void run(const Options& o) {
     add("triangle_ns", 1e3 * still / 2000, "ns", "a triangle of it at rest");
     add("dry_body_us", measure(large, {0, 10, true, 1}, o.seconds).quantile(0.5), "us", "body above the water");
 
+    const bake::FlowSpeed flow = bake::measure_flow_speed(o.seconds, 0);
+    add("flow_inplace_bandwidth", flow.bandwidth, "GB/s", "memory read and written in place, all cores");
+    add("flow_kernel_mlups", flow.kernel, "M/s", "flow: cell updates in the interior of a large block");
+    add("flow_kernel_roof_share", flow.kernel / flow.roof, "", "of what that bandwidth allows at 152 bytes a cell");
+    add("flow_nested_mlups", flow.nested, "M/s", "flow: cell updates of a whole run in nested blocks");
+    add("flow_nested_share", flow.nested / flow.kernel, "", "of the interior's");
+
     if (o.json) {
         nlohmann::ordered_json j;
         for (const Result& r : results)
             j["results"].push_back({{"name", r.name}, {"value", r.value}, {"unit", r.unit}});
         std::printf("%s\n", j.dump(2).c_str());
     } else {
-        for (const Result& r : results) std::printf("%-22s %9.3f %-3s %s\n", r.name, r.value, r.unit, r.what);
+        for (const Result& r : results) std::printf("%-22s %9.3f %-4s %s\n", r.name, r.value, r.unit, r.what);
     }
 }
 
@@ -138,7 +146,7 @@ void run(const Options& o) {
 void add_bench(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command =
-        app.add_subcommand("bench", "Measures what a tick and its parts cost on this machine, on one core.");
+        app.add_subcommand("bench", "Measures what a tick and its parts cost on this machine, on one core, and the flow\nsolver on all.");
     command->add_option("--seconds", options->seconds, "of ticks, for each figure")
         ->check(number_within(1e-3, 3600))
         ->type_name("S")

@@ -13,7 +13,7 @@ double env(const char* n, double d) { const char* s = std::getenv(n); return s ?
 struct Room {
     double ahead, beside, behind;
 };
-constexpr Room near_section{0.5, 0.5, 1.0}, far_section{30, 30, 40};
+constexpr Room near_section{0.6, 0.8, 2.5}, far_section{30, 30, 40};
 // Cells over the body's size in the coarsest block.
 constexpr double coarsest = 1.0, coarsest_section = 0.75;
 constexpr int least_cells = 6, least_gap = 4;  // room of the finest block; from one block's border to the next
@@ -30,18 +30,22 @@ int block_count(double bulk, bool section) {
 
 std::vector<Block> plan_blocks(const BlockRequest& q) {
     const int levels = block_count(q.bulk, q.section);
-    const Room near_body{env("AHEAD0", 0.25), env("BESIDE0", 0.25), env("BEHIND0", 0.4)},
+    const Room near_body{env("AHEAD0", 0.4), env("BESIDE0", 0.5), env("BEHIND0", 2)}, tight{env("AHEADT", 0.12), env("BESIDET", 0.15), env("BEHINDT", 0.3)},
         far_away{env("AHEAD", 8), env("BESIDE", 10), env("BEHIND", 14)};
     const Room inner = q.section ? near_section : near_body, outer = q.section ? far_section : far_away;
     std::vector<Block> blocks(static_cast<std::size_t>(levels));
+    int wake = 0;
+    while (wake + 1 < levels && q.bulk / (1 << wake) > env("WAKE", 36)) ++wake;
     // Bounds asked for, in finest cells; each block holds the last one and a gap.
     Vec3d low = q.low, high = q.high;
     for (int l = 0; l < levels; ++l) {
-        const double cell = 1 << l, share = levels > 1 ? static_cast<double>(l) / (levels - 1) : 1.0;
+        const double cell = 1 << l;
+        const bool skin = l < wake;
+        const double share = levels - 1 > wake ? static_cast<double>(l - wake) / (levels - 1 - wake) : 1.0;
         const double gap = (l == 0 ? least_cells : least_gap) * cell;
-        const double ahead = q.bulk * between(inner.ahead, outer.ahead, share);
-        const double behind = q.still ? ahead : q.bulk * between(inner.behind, outer.behind, share);
-        const double beside = q.bulk * between(inner.beside, outer.beside, share);
+        const double ahead = q.bulk * (skin ? tight.ahead * (l + 1) : between(inner.ahead, outer.ahead, share));
+        const double behind = q.still ? ahead : q.bulk * (skin ? tight.behind * (l + 1) : between(inner.behind, outer.behind, share));
+        const double beside = q.bulk * (skin ? tight.beside * (l + 1) : between(inner.beside, outer.beside, share));
         const Vec3d room_low{ahead, beside, beside}, room_high{behind, beside, beside};
         Block& block = blocks[static_cast<std::size_t>(l)];
         block.grid.periodic = q.section;

@@ -18,7 +18,7 @@ constexpr double lattice_speed = 0.1;
 // Sharp and round bodies, thin plates and sections ran stable down to 1e-6.
 constexpr double least_viscosity = 5e-6;
 // Creeping flow: the speed on the lattice is lowered to keep the viscosity under this, until steps get too many.
-constexpr double most_viscosity = 0.2, least_speed = 1e-3;
+constexpr double most_viscosity = 0.05, least_speed = 1e-3;
 constexpr double sample_rate = 32;  // samples while the stream travels one reference length
 constexpr std::uint64_t most_steps = 50'000'000;
 constexpr double sponge_share = 0.12;      // of the coarsest block's length

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <cstdlib>
 #include <utility>
 
 #include "bake/flow/far_field.h"
@@ -11,7 +12,7 @@ namespace frm::bake::flow {
 namespace {
 
 // Smagorinsky's constant: that of channels. 0.17, of isotropic turbulence, made a sphere's drag at Re 1000 8 % higher.
-constexpr float smagorinsky = 0.1f * 0.1f;
+const float smagorinsky = [] { const char* s = std::getenv("SMAG"); const float c = s ? static_cast<float>(std::atof(s)) : 0.1f; return c * c; }();
 constexpr double sway_y = 0.05, sway_z = 0.03;  // of the stream's speed
 constexpr float soundest = 0.3f;
 
@@ -55,14 +56,14 @@ Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int th
 }
 
 double Nest::ramp(double step) const {
-    const double x = std::min(step / domain_.ramp_steps, 1.0);
+    const double x = std::min(step / static_cast<double>(domain_.ramp_steps), 1.0);
     return x * x * (3 - 2 * x);
 }
 
 /// A sway across the stream while it starts, gone when it has. On a perfectly symmetric body and lattice the wake would
 /// stay symmetric far into the record, with up to a fifth more or less drag than the wake that sheds.
 double Nest::sway(double step) const {
-    const double x = std::min(step / domain_.ramp_steps, 1.0);
+    const double x = std::min(step / static_cast<double>(domain_.ramp_steps), 1.0);
     return 16 * x * x * (1 - x) * (1 - x);
 }
 
@@ -124,11 +125,14 @@ void Nest::advance_level(std::size_t l) {
     if (l == 0) return;
     advance_level(l - 1);
     advance_level(l - 1);
-    const auto writes = static_cast<std::ptrdiff_t>(refinements_[l - 1].restrict_tasks());
+    Refinement& border = refinements_[l - 1];
+    const auto filters = static_cast<std::ptrdiff_t>(border.filter_tasks());
+    const auto writes = static_cast<std::ptrdiff_t>(border.restrict_tasks());
+#pragma omp for schedule(dynamic, 8)
+    for (std::ptrdiff_t n = 0; n < filters; ++n) border.filter(*levels_[l - 1].to, static_cast<std::size_t>(n));
 #pragma omp for schedule(dynamic, 8)
     for (std::ptrdiff_t n = 0; n < writes; ++n) {
-        refinements_[l - 1].restrict_to(*level.from, *levels_[l - 1].to, level.collision.push,
-                                        static_cast<std::size_t>(n));
+        border.restrict_to(*level.from, level.collision.push, static_cast<std::size_t>(n));
     }
 #pragma omp single
     set_push(level, std::uint64_t{1} << l);

@@ -33,9 +33,13 @@ public:
     /// Fills the fine block's ghosts for the time `share` of a coarse step after the older of the two last planes.
     void fill(Populations& fine, float share, const float* push, std::size_t task) const;
 
+    std::size_t filter_tasks() const { return filter_tasks_.size(); }
+    /// Reads the fine step that pulls from `fine` next inside the planes, smoothed to what coarse cells can carry.
+    void filter(const Populations& fine, std::size_t task);
+
     std::size_t restrict_tasks() const { return restrict_tasks_.size(); }
-    /// Writes the coarse nodes next inside the planes from the fine step that pulls from `fine`.
-    void restrict_to(Populations& coarse, const Populations& fine, const float* push, std::size_t task) const;
+    /// After all of filter: writes the coarse nodes next inside the planes.
+    void restrict_to(Populations& coarse, const float* push, std::size_t task) const;
 
 private:
     /// One of the six planes (four for a section) and how its nodes are counted: u along rows, v across them.
@@ -51,6 +55,14 @@ private:
         int v_scale = 2;                // fine nodes a coarse one along v (1: two dimensions)
         std::array<int, 5> inward{};    // directions that enter the fine block
         std::array<std::vector<float>, 2> fields;
+        std::vector<float> between;     // what filter hands to restrict_to: coarse nodes along u, fine ones along v
+
+        int between_rows() const { return wraps ? fine_nv : fine_nv - 2; }
+        int between_count() const { return (fine_nu - 3) / 2; }
+        float* between_row(int field, int n) {
+            return between.data() + (static_cast<std::ptrdiff_t>(field) * between_rows() + n) * between_count();
+        }
+        const float* between_row(int field, int n) const { return const_cast<Face*>(this)->between_row(field, n); }
 
         float* row(int time, int field, int n) {
             return fields[static_cast<std::size_t>(time)].data() +
@@ -69,7 +81,7 @@ private:
     Grid fine_, coarse_;
     float fine_relaxation_, coarse_relaxation_, smagorinsky_;
     std::vector<Face> faces_;
-    std::vector<Task> observe_tasks_, fill_tasks_, restrict_tasks_;
+    std::vector<Task> observe_tasks_, fill_tasks_, filter_tasks_, restrict_tasks_;
     int newest_ = 0;
 };
 

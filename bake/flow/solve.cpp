@@ -8,16 +8,13 @@
 #include <string>
 #include <utility>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "bake/flow/domain.h"
 #include "bake/flow/flow.h"
 #include "bake/flow/forces.h"
 #include "bake/flow/links.h"
 #include "bake/flow/nest.h"
 #include "bake/flow/statistics.h"
+#include "bake/flow/threads.h"
 
 namespace frm::bake {
 namespace flow {
@@ -34,15 +31,6 @@ constexpr double grid_share = 0.5;  // of the difference to the run on half the 
 constexpr std::uint64_t guard_steps = 64;
 constexpr double progress_seconds = 0.3;
 constexpr double least_record = 5, check_every = 0.5;  // lengths: of a confidence that counts, and between looks at it
-
-int thread_count(int wanted) {
-#ifdef _OPENMP
-    return wanted > 0 ? wanted : omp_get_max_threads();
-#else
-    static_cast<void>(wanted);
-    return 1;
-#endif
-}
 
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 

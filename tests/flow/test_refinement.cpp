@@ -1,0 +1,103 @@
+// Blocks of different cells against an exact flow that goes through them.
+#include <cmath>
+#include <vector>
+
+#include "bake/flow/blocks.h"
+#include "bake/flow/nest.h"
+#include "tests/support/catch.h"
+
+using namespace frm;
+using namespace frm::bake;
+using namespace frm::bake::flow;
+
+namespace {
+
+/// A box of nested blocks without a body, the fluid moving along x.
+Domain empty_nest(bool section, double size) {
+    Domain d;
+    BlockRequest request;
+    request.low = {-0.5 * size, -0.5 * size, section ? 0.0 : -0.5 * size};
+    request.high = request.low * -1.0;
+    request.bulk = size;
+    request.section = section;
+    d.blocks = plan_blocks(request);
+    d.plan.cell = 1;
+    d.lattice_speed = d.stream_speed = 0.1;
+    d.ramp_steps = 1;
+    d.first_step = std::uint64_t{1} << (d.blocks.size() - 1);
+    d.sponge = 0.1 * d.blocks.back().grid.nx;
+    return d;
+}
+
+/// Taylor's vortex: no circulation, an exact solution: u = (speed at r = width) r / width exp((1 - (r / width)^2) / 2)
+/// with width^2 = width0^2 + 2 nu t, the speed falling as width^-3.
+struct Vortex {
+    double speed, width0, viscosity;
+    double x, y;
+
+    double width(double t) const { return std::sqrt(width0 * width0 + 2 * viscosity * t); }
+    double peak(double t) const { return speed * std::pow(width0 / width(t), 3); }
+    /// Velocity beside the stream's.
+    Vec3d at(const Vec3d& p, double t, double stream) const {
+        const double dx = p.x - x - stream * t, dy = p.y - y, w = width(t);
+        const double share = peak(t) / w * std::exp(0.5 * (1 - (dx * dx + dy * dy) / (w * w)));
+        return {-dy * share, dx * share, 0};
+    }
+    /// Pressure over density, from the balance with the centrifugal force.
+    double pressure(const Vec3d& p, double t, double stream) const {
+        const double dx = p.x - x - stream * t, dy = p.y - y, w = width(t), u = peak(t);
+        return -0.5 * u * u * std::exp(1 - (dx * dx + dy * dy) / (w * w));
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a vortex goes through blocks of other cells as if they were not there", "[flow]") {
+    Domain d = empty_nest(true, 24);
+    REQUIRE(d.levels() >= 4);
+    d.viscosity = 0.002;
+    Wall wall({}, 1);
+    Nest nest(d, {}, wall, 2);
+    const Vec3d middle = Vec3d{0, 0, 0};
+    // From ahead of the second block, through the finest, to behind both.
+    const Block& finest = d.blocks[0];
+    const double ahead = 2.0 * (2 * finest.first[0] - 40);
+    Vortex vortex{0.03, 24, d.viscosity, ahead * 0.5, 5.3};
+    nest.set([&](const Vec3d& p, std::array<float, field_count>& f) {
+        const Vec3d u = vortex.at(p - middle, 0, 0.1);
+        constexpr double step = 1e-3;
+        f.fill(0);
+        f[0] = static_cast<float>(3 * vortex.pressure(p, 0, 0.1));
+        f[1] = static_cast<float>(0.1 + u.x);
+        f[2] = static_cast<float>(u.y);
+        const Vec3d ux = (vortex.at(p + Vec3d{step, 0, 0}, 0, 0.1) - vortex.at(p - Vec3d{step, 0, 0}, 0, 0.1)) / (2 * step);
+        const Vec3d uy = (vortex.at(p + Vec3d{0, step, 0}, 0, 0.1) - vortex.at(p - Vec3d{0, step, 0}, 0, 0.1)) / (2 * step);
+        // Stress over relaxation time is -2/3 of the rate of strain.
+        f[4] = static_cast<float>(-2.0 / 3 * ux.x);
+        f[5] = static_cast<float>(-2.0 / 3 * uy.y);
+        f[7] = static_cast<float>(-1.0 / 3 * (ux.y + uy.x));
+    });
+    const std::uint64_t begin = nest.step();
+    const double distance = -2 * vortex.x;
+    double worst = 0;
+    while (static_cast<double>(nest.step() - begin) * 0.1 < distance) {
+        nest.advance([](std::uint64_t) {});
+        const auto t = static_cast<double>(nest.step() - begin);
+        if (nest.step() % 256 != 0) continue;
+        double error = 0, density = 0;
+        for (int i = -40; i <= 40; i += 4) {
+            for (int j = -40; j <= 40; j += 4) {
+                const Vec3d p{4 * std::round((vortex.x + 0.1 * t + i) / 4), 4 * std::round((vortex.y + j) / 4), 0};
+                std::array<float, field_count> f{};
+                REQUIRE(nest.sample(p, f));
+                const Vec3d u = vortex.at(p, t, 0.1);
+                error = std::max({error, std::abs(static_cast<double>(f[1]) - 0.1 - u.x), std::abs(static_cast<double>(f[2]) - u.y)});
+                density = std::max(density, std::abs(static_cast<double>(f[0]) / 3 - vortex.pressure(p, t, 0.1)));
+            }
+        }
+        std::printf("x %.1f error %.4f of the speed %.4f, pressure %.4f of its depth\n", vortex.x + 0.1 * t, error / vortex.peak(t), vortex.peak(t), density / (0.5 * vortex.peak(t) * vortex.peak(t) * std::exp(1.0)));
+        worst = std::max(worst, error / vortex.peak(t));
+    }
+    for (const Block& b : d.blocks) std::printf("block %d..%d\n", b.first[0], b.first[0] + b.grid.nx - 1);
+    CHECK(worst < 0.05);
+}
