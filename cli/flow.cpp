@@ -152,7 +152,7 @@ void run(Options& o, bool section) {
     {
         ProgressBar bar("flow");
         flow = bake::solve_flow(surface, whole, o.flow,
-                                [&](const bake::FlowState& st) { return bar.update(st.share, std::to_string(st.drag_coefficient)); });
+                                [&](double share, const std::string& note) { return bar.update(share, note); });
     }
     const double length_used = o.length > 0 ? o.length
                                : section    ? plan.reference_length
@@ -173,9 +173,8 @@ void run(Options& o, bool section) {
         j["cd"] = r.cd;
         j["cl"] = r.cl;
         j["cl_rms"] = r.cl_rms;
-        j["parts"]={flow.uncertainty.grid,flow.uncertainty.statistics,flow.uncertainty.blockage};j["coarse"]=flow.coarse_drag;
-j["strouhal"] = r.strouhal > 0 ? nlohmann::ordered_json(r.strouhal) : nlohmann::ordered_json();
-        j["uncertainty"] = flow.uncertainty.total();
+        j["strouhal"] = r.strouhal > 0 ? nlohmann::ordered_json(r.strouhal) : nlohmann::ordered_json();
+        j["uncertainty"] = flow.uncertainty;
         j["blockage"] = plan.blockage;
         j["cells"] = plan.cells;
         j["steps"] = plan.steps;
@@ -188,7 +187,7 @@ j["strouhal"] = r.strouhal > 0 ? nlohmann::ordered_json(r.strouhal) : nlohmann::
     std::FILE* to = o.out.empty() ? stderr : stdout;
     std::fprintf(to, "force %.5g, %.5g, %.5g N%s; drag coefficient %.4f +- %.1f %% on %.5g m^2%s, lift %.4f (rms %.4f)",
                  r.force_mean.x, r.force_mean.y, r.force_mean.z, section ? " a metre" : "", r.cd,
-                 100 * flow.uncertainty.total(), plan.projected_area, section ? " a metre" : "", r.cl, r.cl_rms);
+                 100 * flow.uncertainty, plan.projected_area, section ? " a metre" : "", r.cl, r.cl_rms);
     if (r.strouhal > 0) std::fprintf(to, ", Strouhal number %.4f", r.strouhal);
     std::fprintf(to,
                  "\nReynolds number %.4g (solved %.4g) on %.4g m; %llu cells, %llu steps, %.1f s, %.0f million cell "
@@ -213,6 +212,7 @@ void add_flow(CLI::App& app) {
     add_direction(*command, "--direction", o.direction, "where the water goes, in the mesh's frame")->required();
     command->add_option("--speed", o.flow.speed, "of the stream, m/s")
         ->required()
+        ->check(stream_speed_range())
         ->type_name("N");
     command->add_option("--viscosity", o.flow.viscosity, "kinematic, m^2/s")
         ->check(viscosity_range())
@@ -251,10 +251,6 @@ void add_flow(CLI::App& app) {
     command->add_option("-o,--out", o.out, "write the series to this CSV file (default: standard output)")
         ->check(not_empty())
         ->type_name("FILE");
-    command->add_option("--turn", o.flow.turn, "t");
-    command->add_option("--slab", o.flow.slab, "t");
-    command->add_option("--sp", o.flow.spin.z, "t");
-    command->add_flag("--ge", o.flow.grid_error, "t");
     command->add_flag("--json", o.json, "means and coefficients as JSON on standard output, no series there");
     command->callback([options, section] { run(*options, section->count() > 0); });
 }
