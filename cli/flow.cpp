@@ -152,7 +152,7 @@ void run(Options& o, bool section) {
     {
         ProgressBar bar("flow");
         flow = bake::solve_flow(surface, whole, o.flow,
-                                [&](double share, const std::string& note) { return bar.update(share, note); });
+                                [&](const bake::FlowState& state) { return bar.update(state.share, ""); });
     }
     const double length_used = o.length > 0 ? o.length
                                : section    ? plan.reference_length
@@ -174,7 +174,7 @@ void run(Options& o, bool section) {
         j["cl"] = r.cl;
         j["cl_rms"] = r.cl_rms;
         j["strouhal"] = r.strouhal > 0 ? nlohmann::ordered_json(r.strouhal) : nlohmann::ordered_json();
-        j["uncertainty"] = flow.uncertainty;
+        j["uncertainty"] = flow.uncertainty.total();
         j["blockage"] = plan.blockage;
         j["cells"] = plan.cells;
         j["steps"] = plan.steps;
@@ -187,7 +187,7 @@ void run(Options& o, bool section) {
     std::FILE* to = o.out.empty() ? stderr : stdout;
     std::fprintf(to, "force %.5g, %.5g, %.5g N%s; drag coefficient %.4f +- %.1f %% on %.5g m^2%s, lift %.4f (rms %.4f)",
                  r.force_mean.x, r.force_mean.y, r.force_mean.z, section ? " a metre" : "", r.cd,
-                 100 * flow.uncertainty, plan.projected_area, section ? " a metre" : "", r.cl, r.cl_rms);
+                 100 * flow.uncertainty.total(), plan.projected_area, section ? " a metre" : "", r.cl, r.cl_rms);
     if (r.strouhal > 0) std::fprintf(to, ", Strouhal number %.4f", r.strouhal);
     std::fprintf(to,
                  "\nReynolds number %.4g (solved %.4g) on %.4g m; %llu cells, %llu steps, %.1f s, %.0f million cell "
