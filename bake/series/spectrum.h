@@ -12,8 +12,8 @@ struct Peak {
     double amplitude = 0;  ///< of the sine, unit of the signal
 };
 
-/// The largest peak of the spectrum (Hann window, KissFFT), its place refined by a parabola through the logarithms of
-/// its neighbours. Peaks below two cycles in the whole signal are not told from drift and are ignored.
+/// The largest peak of the spectrum (Hann window, KissFFT), its place refined by a least-squares fit of a sine with its
+/// second harmonic on a drifting mean. Peaks below two cycles in the whole signal are not told from drift and are ignored.
 Peak strongest_peak(const std::vector<float>& signal, double interval);
 
 }  // namespace frm::bake
