@@ -1,101 +1,33 @@
 """The figures of a report, drawn by matplotlib without a screen; each function gives a data: URI."""
 from __future__ import annotations
 
-import base64
-import io
-
 import matplotlib
 import numpy as np
 from matplotlib import patheffects
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
-from PIL import Image
 
+from ._drawing import AXIS_COLOURS, INK, QUIET, canvas, curve, legend_above, mark, png, styled, svg
 from ._replayed import PARTS, STATES, BodySeries, Frame, Replayed
 
-# Colours that stay apart for colour-blind eyes (Okabe and Ito); one thing has one colour everywhere.
-AXIS_COLOURS = {"x": "#D55E00", "y": "#009E73", "z": "#0072B2"}
-INK, QUIET, RULE = "#22303c", "#66727c", "#d9dfe3"
 # Trough to crest through calm, which is nearly white.
 WATER = LinearSegmentedColormap.from_list(
     "frm_water", ["#0b3c5d", "#2a78a8", "#8fc1da", "#f6f7f5", "#efbf8f", "#cf7440", "#7c2f10"])
 BUDGET_US = 2000.0  # one tick at 500 Hz
 CUT = 2.0  # where the oblique view cuts splashes, in units of the colours' limit
-_POINTS = 1200  # of a curve; a longer one keeps the extremes of each stretch
-
-matplotlib.use("Agg")
-_STYLE = {
-    "font.size": 9, "axes.titlesize": 9, "axes.titleweight": "bold", "axes.titlelocation": "left",
-    "axes.edgecolor": QUIET, "axes.labelcolor": INK, "axes.linewidth": 0.7, "text.color": INK,
-    "xtick.color": QUIET, "ytick.color": QUIET, "xtick.labelcolor": INK, "ytick.labelcolor": INK,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": RULE,
-    "grid.linewidth": 0.6, "axes.axisbelow": True, "legend.frameon": False, "lines.linewidth": 1.3,
-    "axes.formatter.useoffset": False, "axes.formatter.limits": (-4, 5), "axes.formatter.use_mathtext": True,
-    "svg.hashsalt": "frm", "path.simplify_threshold": 0.3,
-}
-
-
-def _styled(draw):
-    def styled(*arguments, **options):
-        with matplotlib.rc_context(_STYLE):
-            return draw(*arguments, **options)
-    return styled
-
-
-def _figure(width: float, height: float) -> Figure:
-    return Figure(figsize=(width, height), layout="constrained")
-
-
-def _svg(figure: Figure) -> str:
-    out = io.BytesIO()
-    figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
-    return "data:image/svg+xml;base64," + base64.b64encode(out.getvalue()).decode()
-
-
-def _png(figure: Figure, dpi: int) -> str:
-    """With a palette: a third of the size, and no difference that an eye would see."""
-    out = io.BytesIO()
-    figure.savefig(out, format="png", dpi=dpi)
-    picture = Image.open(out).convert("RGB").quantize(256)
-    out = io.BytesIO()
-    picture.save(out, format="png", optimize=True)
-    return "data:image/png;base64," + base64.b64encode(out.getvalue()).decode()
-
-
-def _thinned(time: np.ndarray, values: np.ndarray):
-    """Fewer points that draw the same curve: the lowest and the highest of each stretch."""
-    stretch = len(values) // (_POINTS // 2)
-    if stretch < 3:
-        return time, values
-    whole = len(values) // stretch * stretch
-    blocks = np.nan_to_num(values[:whole].reshape(-1, stretch))
-    starts = np.arange(0, whole, stretch)
-    extremes = [starts + blocks.argmin(1), starts + blocks.argmax(1), [len(values) - 1]]
-    rows = np.unique(np.concatenate(extremes))
-    return time[rows], values[rows]
-
-
-def _curve(axes, time, values, **style) -> None:
-    axes.plot(*_thinned(time, values), **style)
-
 
 def _vector(axes, time, vectors, magnitude=True) -> None:
     if magnitude:
-        _curve(axes, time, np.linalg.norm(vectors, axis=1), color=INK, linewidth=0.9, alpha=0.55,
+        curve(axes, time, np.linalg.norm(vectors, axis=1), color=INK, linewidth=0.9, alpha=0.55,
                label="magnitude")
     for axis, (name, colour) in enumerate(AXIS_COLOURS.items()):
-        _curve(axes, time, vectors[:, axis], color=colour, label=name)
+        curve(axes, time, vectors[:, axis], color=colour, label=name)
 
 
-def _legend_above(axes, columns: int = 4) -> None:
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=columns, borderaxespad=0.1,
-                handlelength=1.4, columnspacing=1.2)
-
-
-@_styled
+@styled
 def forces(replayed: Replayed, body: BodySeries) -> str:
     """Total force and torque over time."""
-    figure = _figure(7.6, 4.6)
+    figure = canvas(7.6, 4.6)
     upper, lower = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 2)})
     _vector(upper, replayed.time, body.force[:, 0])
     _vector(lower, replayed.time, body.torque[:, 0])
@@ -108,14 +40,14 @@ def forces(replayed: Replayed, body: BodySeries) -> str:
     upper.set(title="Force on the body", ylabel="N")
     lower.set(title="Torque about its origin", ylabel="N m", xlabel="time, s")
     upper.margins(x=0.01, y=0.1)
-    _legend_above(upper)
-    return _svg(figure)
+    legend_above(upper)
+    return svg(figure)
 
 
-@_styled
+@styled
 def parts(replayed: Replayed, body: BodySeries) -> str:
     """The force by its four parts, each with a scale of its own."""
-    figure = _figure(7.6, 4.6)
+    figure = canvas(7.6, 4.6)
     grid = figure.subplots(2, 2, sharex=True).ravel()
     for axes, (part, name) in zip(grid, list(enumerate(PARTS))[1:]):
         _vector(axes, replayed.time, body.force[:, part], magnitude=False)
@@ -127,29 +59,29 @@ def parts(replayed: Replayed, body: BodySeries) -> str:
             axes.set_ylim(-1, 1)
     for axes in grid[2:]:
         axes.set_xlabel("time, s")
-    _legend_above(grid[1], 3)
-    return _svg(figure)
+    legend_above(grid[1], 3)
+    return svg(figure)
 
 
-@_styled
+@styled
 def motion(replayed: Replayed, body: BodySeries) -> str:
     """How deep and how fast the body went."""
-    figure = _figure(7.6, 4.8)
+    figure = canvas(7.6, 4.8)
     height, speed, wet = figure.subplots(3, 1, sharex=True)
     state = dict(zip(STATES, body.state.T))
-    _curve(height, replayed.time, body.position[:, 2], color=AXIS_COLOURS["z"])
+    curve(height, replayed.time, body.position[:, 2], color=AXIS_COLOURS["z"])
     height.set(title="Height of the body's origin (z)", ylabel="m")
-    _curve(speed, replayed.time, body.speed, color=QUIET, label="of the origin")
+    curve(speed, replayed.time, body.speed, color=QUIET, label="of the origin")
     # Without a wet source there is no such speed.
     relative = np.where(state["wet_sources"] > 0, state["relative_speed"], np.nan)
-    _curve(speed, replayed.time, relative, color=AXIS_COLOURS["x"],
+    curve(speed, replayed.time, relative, color=AXIS_COLOURS["x"],
            label="relative to the water, mean of the wet sources")
     speed.set(title="Speed", ylabel="m/s", ylim=(0, None))
-    _legend_above(speed, 2)
-    _curve(wet, replayed.time, state["wet_area"], color=AXIS_COLOURS["y"])
+    legend_above(speed, 2)
+    curve(wet, replayed.time, state["wet_area"], color=AXIS_COLOURS["y"])
     wet.set(title="Wet area", ylabel="m²", xlabel="time, s", ylim=(0, None))
     height.margins(x=0.01)
-    return _svg(figure)
+    return svg(figure)
 
 
 class FrameScale:
@@ -190,23 +122,23 @@ class FrameScale:
                     or (self.high < [self.x[-1] - cell, self.y[-1] - cell]).any())
 
 
-@_styled
+@styled
 def colour_bar(scale: FrameScale) -> str:
-    figure = _figure(7.6, 0.62)
+    figure = canvas(7.6, 0.62)
     axes = figure.subplots()
     limit = scale.limit * 1e3
     colours = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(-limit, limit), WATER)
     figure.colorbar(colours, cax=axes, orientation="horizontal", extend="both",
                     label="water height above calm, mm")
-    return _svg(figure)
+    return svg(figure)
 
 
-@_styled
+@styled
 def frame(scale: FrameScale, shown: Frame) -> str:
     """The surface from above, with the sources and the horizontal part of their forces."""
     across = scale.high - scale.low
     width = 3.5
-    figure = _figure(width, (width - 0.45) * across[1] / across[0] + 0.36)
+    figure = canvas(width, (width - 0.45) * across[1] / across[0] + 0.36)
     axes = figure.subplots()
     axes.grid(False)
     for side in ("top", "right"):
@@ -235,7 +167,7 @@ def frame(scale: FrameScale, shown: Frame) -> str:
         _scale_arrow(axes, scale, length, halo)
     axes.text(0.03, 0.965, f"{shown.time:.3f} s", transform=axes.transAxes, va="top", fontsize=9,
               fontweight="bold", path_effects=halo)
-    return _png(figure, 150)
+    return png(figure, 150)
 
 
 def _arrows(axes, positions, vectors, width, colour, effects=None) -> None:
@@ -253,7 +185,7 @@ def _scale_arrow(axes, scale: FrameScale, length: float, halo) -> None:
     axes.text(start[0], start[1] + 0.03 * across[1], f"{value:g} N", fontsize=7.5, path_effects=halo)
 
 
-@_styled
+@styled
 def oblique(scale: FrameScale, shown: Frame) -> tuple[str, float]:
     """The surface in space at one time; also how much higher than true it is drawn."""
     figure = Figure(figsize=(7.6, 3.7))
@@ -283,7 +215,7 @@ def oblique(scale: FrameScale, shown: Frame) -> tuple[str, float]:
              zlim=(-0.175 * max(across), 0.175 * max(across)))
     axes.view_init(elev=32, azim=-62)
     axes.set_axis_off()
-    return _png(figure, 180), exaggeration
+    return png(figure, 180), exaggeration
 
 
 def _height_at(scale: FrameScale, shown: Frame, position) -> float:
@@ -292,14 +224,14 @@ def _height_at(scale: FrameScale, shown: Frame, position) -> float:
     return float(shown.height[row, column])
 
 
-@_styled
+@styled
 def tick_times(tick_us: dict) -> str:
     """The histogram of tick times on logarithmic axes."""
     edges = np.asarray(tick_us["histogram"]["edges_us"], float)
     counts = np.asarray(tick_us["histogram"]["counts"], float)
     if edges[0] <= 0:
         edges[0] = edges[1] / 2
-    figure = _figure(7.6, 3.0)
+    figure = canvas(7.6, 3.0)
     axes = figure.subplots()
     axes.stairs(counts, edges, fill=True, color="#8fc1da", edgecolor="#2a78a8", linewidth=0.6, baseline=0.6)
     axes.set(xscale="log", yscale="log", xlabel="time of a tick, µs", ylabel="ticks in the bin")
@@ -309,20 +241,12 @@ def tick_times(tick_us: dict) -> str:
     if high > BUDGET_US / 4:
         high = max(high, BUDGET_US * 1.3)
         axes.axvline(BUDGET_US, color=AXIS_COLOURS["x"], linewidth=1.4)
-        _mark(axes, BUDGET_US, "500 Hz budget", 0, AXIS_COLOURS["x"], left=True)
+        mark(axes, BUDGET_US, "500 Hz budget", 0, AXIS_COLOURS["x"], left=True)
     axes.set(xlim=(low, high), ylim=(0.6, counts.max() * 1.6))
     for level, (key, name) in enumerate((("median", "median"), ("p99", "99 %"), ("p9999", "99.99 %"),
                                          ("max", "slowest"))):
         axes.axvline(tick_us[key], color=INK, linewidth=0.9, linestyle=(0, (3, 2)))
-        _mark(axes, tick_us[key], name, level, INK)
+        mark(axes, tick_us[key], name, level, INK)
     axes.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axes.yaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
-    return _svg(figure)
-
-
-def _mark(axes, at: float, name: str, level: int, colour: str, left: bool = False) -> None:
-    """A name beside a line; each at its own height, because the lines may be close together."""
-    axes.annotate(name, (at, 1 - 0.09 * level), xycoords=("data", "axes fraction"),
-                  xytext=(-3 if left else 3, -1), textcoords="offset points",
-                  va="top", ha="right" if left else "left", fontsize=8, color=colour,
-                  path_effects=[patheffects.withStroke(linewidth=2.5, foreground="white")])
+    return svg(figure)

@@ -10,9 +10,9 @@ import numpy as np
 from . import _figures
 from ._abi import MapInfo
 from ._base import version
+from ._html import document, facts as _facts, figure as _figure, many, table as _table
 from ._progress import Progress
 from ._replayed import PARTS, STATES, BodySeries, Replayed
-from ._style import STYLE
 from ._words import number, plural, quantity, vector
 
 _SHOWN_BODIES = 6
@@ -32,17 +32,6 @@ _MAP_FIELDS = {
 }
 
 
-def _figure(uri: str, alt: str, caption: str) -> str:
-    return (f'<figure><div class="wide"><img src="{uri}" alt="{escape(alt)}"></div>'
-            f"<figcaption>{caption}</figcaption></figure>")
-
-
-def _table(rows) -> str:
-    cells = "".join(f'<tr><th scope="row">{escape(label)}</th><td>{escape(value)}</td></tr>'
-                    for label, value in rows)
-    return f"<table>{cells}</table>"
-
-
 def page(replayed: Replayed, recording: Path, run: dict) -> str:
     """The whole page."""
     scene = str(run.get("scene") or recording.stem)
@@ -60,23 +49,9 @@ def page(replayed: Replayed, recording: Path, run: dict) -> str:
                  for index, (info, provenance) in enumerate(replayed.maps)]
     if run.get("tick_us"):
         sections.append(_tick_times(run))
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{escape(scene)} – frm report</title>
-<style>{STYLE}</style>
-</head>
-<body>
-<main>
-{chr(10).join(sections)}
-<footer>Made by frm.report, frm {'.'.join(map(str, version()))}, from <code>{escape(recording.name)}</code>.
-Vectors are in frm's own frame: right-handed, z up. This page loads nothing from elsewhere.</footer>
-</main>
-</body>
-</html>
-"""
+    return document(scene, sections,
+                    f"Made by frm.report, frm {'.'.join(map(str, version()))}, from "
+                    f"<code>{escape(recording.name)}</code>. Vectors are in frm's own frame: right-handed, z up.")
 
 
 def _verdict(replayed: Replayed) -> str:
@@ -106,7 +81,6 @@ def _head(replayed: Replayed, recording: Path, run: dict, scene: str) -> str:
         facts.append(("Devices", number(replayed.info.devices)))
     if "tick_seconds" in run:
         facts.append(("Time in ticks", quantity(float(run["tick_seconds"]), "s")))
-    facts = "".join(f"<div><dt>{name}</dt><dd>{value}</dd></div>" for name, value in facts)
     notes = []
     if replayed.info.torn:
         notes.append("The recording was cut off; all up to there is shown.")
@@ -125,7 +99,7 @@ def _head(replayed: Replayed, recording: Path, run: dict, scene: str) -> str:
 <p class="over">Force of water on moving objects</p>
 <h1>{escape(scene)}</h1>
 {_verdict(replayed)}
-<dl class="facts">{facts}</dl>
+{_facts(facts)}
 <p>The recording <code>{escape(recording.name)}</code> was replayed and every force compared with the recorded
 one, bit for bit.{water_text}{ran}</p>
 {''.join(f'<p class="note">{note}</p>' for note in notes)}
@@ -268,11 +242,8 @@ def _map(index: int, info: MapInfo, provenance: dict, count: int) -> str:
 def _flows(flows: list[dict]) -> str:
     """The flow solved for each direction: a row each, a column for every value of the first."""
     columns = list(flows[0])
-    head = "".join(f"<th scope='col'>{escape(name.replace('_', ' '))}</th>" for name in columns)
-    rows = "".join("<tr>" + "".join(f"<td>{escape(_cell(one.get(name)))}</td>" for name in columns) + "</tr>"
-                   for one in flows)
-    return (f'<h3>The flow from each direction</h3><div class="wide"><table class="many"><thead><tr>{head}</tr></thead>'
-            f"<tbody>{rows}</tbody></table></div>")
+    rows = [[_cell(one.get(name)) for name in columns] for one in flows]
+    return f"<h3>The flow from each direction</h3>{many([name.replace('_', ' ') for name in columns], rows)}"
 
 
 def _cell(value) -> str:

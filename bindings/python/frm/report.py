@@ -47,8 +47,10 @@ def write_report(recording, output, run: dict | None = None, frames: int = 12) -
     """Writes the page about a recording; `output` appears whole or not at all."""
     from . import _page, _replayed
     replayed = _replayed.collect(os.fspath(recording), frames)
-    page = _page.page(replayed, Path(recording), run or {})
-    output = Path(output)
+    write_whole(Path(output), _page.page(replayed, Path(recording), run or {}))
+
+
+def write_whole(output: Path, page: str) -> None:
     handle, temporary = tempfile.mkstemp(prefix=f".{output.name}.", dir=output.parent)
     try:
         with open(handle, "w", encoding="utf-8", newline="\n") as file:
