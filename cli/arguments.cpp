@@ -48,6 +48,10 @@ CLI::Validator number_within(double low, double high) {
                        [=](double v) { return v >= low && v <= high; });
 }
 
+CLI::Validator speed_or_zero() {
+    return number_that("0 or a number from 1e-06 to 10000", [](double v) { return v == 0 || (v >= 1e-6 && v <= 1e4); });
+}
+
 CLI::Validator positive() {
     return number_that("a number above 0", [](double v) { return v > 0; });
 }

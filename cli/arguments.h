@@ -26,6 +26,8 @@ CLI::Validator one_of(const std::vector<std::string>& words);
 inline CLI::Validator density_range() { return number_within(1e-3, 1e5); }
 inline CLI::Validator viscosity_range() { return number_within(1e-9, 1e2); }
 inline CLI::Validator stream_speed_range() { return number_within(1e-6, 1e4); }
+/// The same, or 0.
+CLI::Validator speed_or_zero();
 
 /// Three finite numbers, "x,y,z", and nothing else.
 bool parse_vector(const std::string& text, Numbers& out);

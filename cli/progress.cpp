@@ -53,15 +53,20 @@ ProgressBar::~ProgressBar() {
     std::signal(SIGTERM, old_terminate_);
 }
 
+double ProgressBar::elapsed() const { return seconds_between(begin_, Clock::now()); }
+
 bool ProgressBar::update(double share, const std::string& note) {
+    return update(share, share > 0 ? elapsed() * (1 - share) / share : -1, note);
+}
+
+bool ProgressBar::update(double share, double seconds_left, const std::string& note) {
     const Clock::time_point now = Clock::now();
-    const double elapsed = seconds_between(begin_, now);
-    const double pause = terminal_ ? 0.1 : std::max(5.0, elapsed / 20);
-    if (elapsed < 2 || (visible_ && seconds_between(shown_, now) < pause)) return !interrupted();
+    const double pause = terminal_ ? 0.1 : std::max(5.0, elapsed() / 20);
+    if (elapsed() < 2 || (visible_ && seconds_between(shown_, now) < pause)) return !interrupted();
     visible_ = true;
     shown_ = now;
     share = std::clamp(share, 0.0, 1.0);
-    const std::string left = share > 0 ? time_text(elapsed * (1 - share) / share) + " left" : "";
+    const std::string left = seconds_left >= 0 ? time_text(seconds_left) + " left" : "";
     if (terminal_) {
         constexpr int width = 28;
         const int full = static_cast<int>(share * width);

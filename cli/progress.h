@@ -16,9 +16,14 @@ public:
 
     /// `share` is 0 to 1. Shows nothing during the first two seconds. False once the user has pressed Ctrl-C.
     bool update(double share, const std::string& note);
+    /// The same for work that knows its time: `seconds_left` below zero says that it does not yet.
+    bool update(double share, double seconds_left, const std::string& note);
 
 private:
     using Clock = std::chrono::steady_clock;
+
+    /// Seconds since the start.
+    double elapsed() const;
 
     std::string title_;
     Clock::time_point begin_, shown_;

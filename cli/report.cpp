@@ -75,4 +75,8 @@ void write_report(const std::string& recording, const std::string& run_json, con
         throw Failure("--report: the page was not written");
 }
 
+void write_flow_page(const std::string& folder) {
+    if (run_python({"-m", "frm.flow_report", folder}) != 0) throw Failure("--report: the page was not written");
+}
+
 }  // namespace frm::cli

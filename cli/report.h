@@ -1,4 +1,4 @@
-// The page that shows a run: drawn by the Python package (bindings/python/frm/report.py) from the recording.
+// The pages that show a run and a flow: drawn by the Python package (bindings/python/frm/report.py, flow_report.py).
 #pragma once
 
 #include <string>
@@ -10,5 +10,8 @@ void require_report_tools();
 
 /// Replays the recording and writes the page. Throws Failure.
 void write_report(const std::string& recording, const std::string& run_json, const std::string& page);
+
+/// Draws report.html in a folder that holds the rest of a flow's report (cli/flow_report.h). Throws Failure.
+void write_flow_page(const std::string& folder);
 
 }  // namespace frm::cli

@@ -11,12 +11,14 @@ OPTIONS = {
     "info": ["FILE", "--json"],
     "verify": ["FILE", "--json"],
     "flow": ["MESH", "--direction", "--speed", "--viscosity", "--density", "--section", "--length",
-             "--resolution", "--out", "--json"],
+             "--resolution", "--duration", "--confidence PERCENT", "--seconds", "--spin", "--slab", "--turn DEGREES",
+             "--no-grid-error", "--memory GIB", "--report DIR", "--out", "--json"],
     "force": ["FILE", "--velocity", "--spin", "--seconds", "--json"],
     "run": ["SCENE", "--map", "--record", "--report", "--csv", "--seconds", "--json"],
     "replay": ["FILE", "--json"],
     "bench": ["--seconds", "--json"],
 }
+FLOW = ["flow", "a.glb", "--direction", "1,0,0", "--speed", "1"]
 
 
 def test_help_lists_the_commands(good):
@@ -68,6 +70,19 @@ def test_version(good):
     ("--speed|-1", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "-1"]),
     ("--speed|0", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "0"]),
     ("--speed|nan", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "nan"]),
+    ("--confidence|0|0.01 to 100", [*FLOW, "--confidence", "0"]),
+    ("--confidence|1%", [*FLOW, "--confidence", "1%"]),
+    ("--seconds|-1", [*FLOW, "--seconds", "-1"]),
+    ("--seconds|soon", [*FLOW, "--seconds", "soon"]),
+    ("--spin|three numbers", [*FLOW, "--spin", "3"]),
+    ("--spin|zero", [*FLOW, "--spin", "0,0,0"]),
+    ("--spin|longer than", [*FLOW, "--spin", "0,1e9,0"]),
+    ("--slab|--section", [*FLOW, "--slab", "2"]),
+    ("--slab|0.1 to 100", [*FLOW, "--section", "--slab", "0"]),
+    ("--turn|400", [*FLOW, "--turn", "400"]),
+    ("--memory|0", [*FLOW, "--memory", "0"]),
+    ("--no-grid-error", [*FLOW, "--no-grid-error=maybe"]),
+    ("--report|empty", [*FLOW, "--report", ""]),
     ("--length|-2", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "1", "--length", "-2"]),
     ("--section|no direction", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "1", "--section", "0,0,0"]),
     ("--quality|fast|draft, standard, high", ["bake", "a.glb", "-o", "b.frm", "--quality", "fast"]),
