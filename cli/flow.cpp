@@ -94,7 +94,7 @@ void print_plan(const bake::FlowPlan& plan, double length) {
 }
 
 std::string note_of(const bake::FlowState& state, bool spin_alone) {
-    std::string text = state.coarse ? "half the resolution: " : "";
+    std::string text = state.coarse ? "coarse grid: " : "";
     if (!state.recording) return text + "starting";
     char number[64];
     std::snprintf(number, sizeof number, "%s %.3f", spin_alone ? "torque" : "drag", state.drag_coefficient);

@@ -68,7 +68,7 @@ bool ProgressBar::update(double share, double seconds_left, const std::string& n
     share = std::clamp(share, 0.0, 1.0);
     const std::string left = seconds_left >= 0 ? time_text(seconds_left) + " left" : "";
     if (terminal_) {
-        constexpr int width = 28;
+        constexpr int width = 20;  // so that the line stays below 80 columns and is one line
         const int full = static_cast<int>(share * width);
         std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f %%  %s  %s", title_.c_str(),
                      std::string(static_cast<std::size_t>(full), '#').c_str(),

@@ -47,8 +47,8 @@ def _answer(flow: Flow) -> str:
     json, off = flow.json, flow.json["uncertainty"]
     name, value = (("torque", json["torque_coefficient"]) if flow.spin_alone else ("drag", json["cd"]))
     least, most = sorted((value * (1 - off), value * (1 + off)))
-    text = (f"The {name} coefficient is <b>{number(value, 4)} ± {_percent(off)}</b> ({number(least)} to "
-            f"{number(most)}) at a Reynolds number of {number(json['reynolds'])}")
+    text = (f"The {name} coefficient is <b>{number(value, 4)} ± {_percent(off)}</b> ({number(least, 4)} to "
+            f"{number(most, 4)}) at a Reynolds number of {number(json['reynolds'])}")
     if json["strouhal"]:
         text += f"; the wake sheds at a Strouhal number of <b>{number(json['strouhal'])}</b>"
         if _periods(flow) < _FEW_PERIODS:
@@ -66,7 +66,7 @@ def _head(flow: Flow) -> str:
         values.append(("Strouhal number", number(json["strouhal"])))
     values += [("Reynolds number", number(json["reynolds"])), ("Cells", number(float(f"{json['cells']:.3g}"))),
                ("Memory", f"{number(json['bytes'] / 2 ** 20)} MiB"), ("Time", quantity(json["seconds"], "s"))]
-    notes = list(report.get("notes", []))
+    notes = [note[:1].upper() + note[1:] for note in report.get("notes", [])]
     if json["ending"] in _ENDINGS:
         notes.append(_ENDINGS[json["ending"]])
     force = vector(json["force_mean"], "N a metre" if report.get("section") else "N")
