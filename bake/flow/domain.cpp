@@ -22,7 +22,7 @@ constexpr double most_viscosity = 0.05, least_speed = 1e-3;
 constexpr double sample_rate = 32;  // samples while the stream travels one reference length
 constexpr std::uint64_t most_steps = 50'000'000;
 constexpr double sponge_share = 0.12;      // of the coarsest block's length
-constexpr double settling = 2;  // lengths until the fine grid has forgotten what it started from
+constexpr double settling = 4;  // lengths until the fine grid has forgotten what it started from
 constexpr double most_normal_flow = 0.05;  // share of a spinning wall's speed
 
 std::string number(double v) {
@@ -272,6 +272,7 @@ FlowCase coarser(const FlowCase& c) {
     coarse.grid_error = false;
     coarse.resolution = 0.5 * c.resolution;
     coarse.seconds = 0.4 * c.seconds;
+    coarse.pictures = false;
     return coarse;
 }
 
@@ -333,6 +334,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
         const double coarsest = 1 << (block_count(request.bulk, true) - 1);
         request.layers = static_cast<int>(std::max(1.0, std::round(c.slab * d.length / coarsest)) * coarsest);
     }
+    d.bulk = request.bulk;
     d.blocks = plan_blocks(request);
     d.origin = body.centre() - middle * plan.cell;
     if (c.section) d.origin.z = dot(d.frame.z, c.section_origin);

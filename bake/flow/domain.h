@@ -44,6 +44,7 @@ struct Domain {
     double stream_speed = 0;    ///< cells a step
     double viscosity = 0;       ///< finest cells^2 a step, the one solved
     double length = 0;          ///< reference length in finest cells
+    double bulk = 0;            ///< size of the body in finest cells: root of its projected area, a section's height
     double sponge = 0;          ///< coarsest cells of raised viscosity before the outlet
     double force_unit = 0;      ///< N of one lattice unit
     double drag_area = 0;       ///< projected area in the units of a lattice force: 2 F / (u^2 drag_area) is Cd

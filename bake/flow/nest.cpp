@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <cstdlib>
 #include <utility>
 
 #include "bake/flow/far_field.h"
@@ -12,9 +11,10 @@ namespace frm::bake::flow {
 namespace {
 
 // Smagorinsky's constant: that of channels. 0.17, of isotropic turbulence, made a sphere's drag at Re 1000 8 % higher.
-const float smagorinsky = [] { const char* s = std::getenv("SMAG"); const float c = s ? static_cast<float>(std::atof(s)) : 0.1f; return c * c; }();
+constexpr float smagorinsky = 0.1f * 0.1f;
 constexpr double sway_y = 0.05, sway_z = 0.03;  // of the stream's speed
 constexpr float soundest = 0.3f;
+constexpr std::size_t cache_bytes = std::size_t{32} << 20;  // blocks beyond it are written past the caches
 
 }  // namespace
 
@@ -29,6 +29,7 @@ Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int th
         const bool outermost = l + 1 == domain.levels();
         level.relaxation = relaxation_times(grid, domain.relaxation(l), outermost ? domain.sponge : 0);
         level.collision.smagorinsky = smagorinsky;
+        level.collision.past_caches = 2 * Populations::bytes(grid) > cache_bytes;
         levels_.push_back(std::move(level));
         if (l > 0) {
             refinements_.emplace_back(domain.blocks[static_cast<std::size_t>(l) - 1],
@@ -154,13 +155,15 @@ void Nest::bulk(std::size_t l) {
     const bool outermost = l + 1 == levels_.size();
     const auto far = stream_populations(stream(level.step + (std::uint64_t{1} << l)));
     const auto rows = static_cast<std::ptrdiff_t>(grid.rows());
-#pragma omp for schedule(dynamic, 16)
+#pragma omp for schedule(dynamic, 16) nowait
     for (std::ptrdiff_t n = 0; n < rows; ++n) {
         const auto r = static_cast<std::size_t>(n);
         collide_row(grid, *level.from, *level.to, r, 0, grid.pitch(), level.collision);
         if (l == 0) empty_solid(r);
         if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
     }
+    finish_stores();
+#pragma omp barrier
 }
 
 /// Cells inside the body are swept along by the bulk's loop; keep them at rest.
@@ -214,7 +217,7 @@ bool Nest::sample(const Vec3d& point, std::array<float, field_count>& fields) co
             for (std::size_t f = 0; f < field_count; ++f) sum[f] += share * static_cast<double>(one[f]);
             weights += share;
         }
-        if (weights == 0) return false;
+        if (weights < 0.5) return false;
         for (std::size_t f = 0; f < field_count; ++f) {
             fields[f] = static_cast<float>(sum[f] / weights / (f < 4 ? 1.0 : cell));
         }

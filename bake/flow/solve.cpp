@@ -13,6 +13,7 @@
 #include "bake/flow/forces.h"
 #include "bake/flow/links.h"
 #include "bake/flow/nest.h"
+#include "bake/flow/picture.h"
 #include "bake/flow/statistics.h"
 #include "bake/flow/threads.h"
 
@@ -30,6 +31,7 @@ constexpr double least_statistics = 1e-3;
 constexpr double grid_share = 0.5;  // of the difference to the run on half the resolution
 constexpr std::uint64_t guard_steps = 64;
 constexpr double progress_seconds = 0.3;
+constexpr double picture_every = 0.5;  // lengths
 constexpr double least_record = 5, check_every = 0.5;  // lengths: of a confidence that counts, and between looks at it
 
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
@@ -88,6 +90,7 @@ public:
         while (measure_.size() < domain_.samples) {
             nest_.advance(after_step);
             watch();
+            look();
             if (enough()) break;
         }
         finish();
@@ -162,6 +165,16 @@ private:
                       static_cast<unsigned long long>(domain_.plan.steps), domain_.plan.reynolds_solved,
                       case_.resolution);
         throw BakeError(text);
+    }
+
+    /// Adds to the pictures in the last third of the run.
+    void look() {
+        if (!case_.pictures || share_done() < 2.0 / 3) return;
+        const double lengths = recorded_lengths();
+        if (lengths < pictured_ + picture_every) return;
+        pictured_ = lengths;
+        if (!picture_) picture_ = std::make_unique<Picture>(domain_);
+        picture_->add(nest_);
     }
 
     double recorded_lengths() const {
@@ -248,6 +261,13 @@ private:
         series_.uncertainty.statistics =
             average != 0 ? std::max(least_statistics, standard_error(measure_) / std::abs(average)) : 1;
         series_.uncertainty.blockage = std::max(1e-3, 0.5 * blockage_share(cd));
+        if (case_.pictures) {
+            if (!picture_) {  // it ended early
+                picture_ = std::make_unique<Picture>(domain_);
+                picture_->add(nest_);
+            }
+            series_.slices = picture_->slices();
+        }
         series_.seconds = seconds_since(started_);
         series_.mlups = domain_.plan.updates * share_done() / series_.seconds * 1e-6;
     }
@@ -262,6 +282,8 @@ private:
     std::vector<double> measure_;  // the quantity, a value a sample, in lattice units
     std::vector<Load> loads_, before_, sample_;
     double now_ = 0, shown_ = 0, checked_ = 0, known_ = 1;
+    std::unique_ptr<Picture> picture_;
+    double pictured_ = -1e30;
     double before_updates_, after_updates_;
     bool met_ = false;
     std::uint64_t guarded_ = 0;
