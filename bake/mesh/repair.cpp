@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 #include <tuple>
 
 #include "bake/mesh/adjacency.h"
+#include "bake/mesh/holes.h"
+#include "bake/mesh/refusals.h"
 #include "bake/mesh/shells.h"
+#include "bake/mesh/walls.h"
 #include "bake/mesh/weld.h"
 
 namespace frm::bake {
@@ -17,20 +19,14 @@ namespace {
 constexpr double kJoin[] = {1e-6, 1e-5, 1e-4};  // of the size; wider only where the surface is open otherwise
 constexpr double kFlat = 1e-5;                  // mean thickness over size: under this there is no volume to speak of
 
-std::string count_of(std::size_t n, const char* thing) { return std::to_string(n) + " " + thing + (n == 1 ? "" : "s"); }
-
-std::string place(const Vec3d& p) {
-    char text[96];
-    std::snprintf(text, sizeof text, "(%.4g, %.4g, %.4g) m", p.x, p.y, p.z);
-    return text;
-}
-
 // The soup after joining vertices, with what was left out on the way.
 struct Candidate {
     double join = 0;
     std::vector<Triangle> triangles;
-    std::size_t collapsed = 0, copies = 0, walls = 0;
-    std::size_t odd_edges = 0;  // edges with an odd number of triangles; 0: closed
+    std::size_t collapsed = 0, copies = 0, inner = 0;
+    std::vector<Triangle> walls;  // removed because they lay back to back
+    Holes holes;                  // closed
+    std::size_t odd_edges = 0;    // edges with an odd number of triangles; 0: closed
 
     bool better_than(const Candidate& other) const { return odd_edges < other.odd_edges; }
 };
@@ -56,16 +52,17 @@ Candidate without_repeats(const Candidate& from) {
     }
     std::sort(sorted.begin(), sorted.end());
     std::vector<char> keep_one(sorted.size(), 1), keep_odd(sorted.size(), 1);
-    std::size_t copies = 0, walls = 0;
+    std::size_t copies = 0;
     for (std::size_t i = 0, j = 0; i < sorted.size(); i = j) {
         while (j < sorted.size() && sorted[j].first == sorted[i].first) ++j;
         for (std::size_t k = i + 1; k < j; ++k) keep_one[sorted[k].second] = keep_odd[sorted[k].second] = 0;
         if ((j - i) % 2 == 0) keep_odd[sorted[i].second] = 0;
         copies += j - i - 1;
-        walls += (j - i) % 2 == 0 ? j - i : j - i - 1;
     }
     const auto kept = [&](const std::vector<char>& keep) {
-        Candidate result{from.join, {}, from.collapsed, 0, 0, 0};
+        Candidate result;
+        result.join = from.join;
+        result.collapsed = from.collapsed;
         for (std::size_t t = 0; t < keep.size(); ++t) {
             if (keep[t]) result.triangles.push_back(from.triangles[t]);
         }
@@ -76,7 +73,9 @@ Candidate without_repeats(const Candidate& from) {
     one.copies = copies;
     if (copies == 0 || one.odd_edges == 0) return one;
     Candidate odd = kept(keep_odd);
-    odd.walls = walls;
+    for (std::size_t t = 0; t < keep_odd.size(); ++t) {
+        if (!keep_odd[t]) odd.walls.push_back(from.triangles[t]);
+    }
     return odd.better_than(one) ? odd : one;
 }
 
@@ -93,6 +92,72 @@ Candidate join_vertices(const Surface& soup, double join) {
         }
     }
     return without_repeats(result);
+}
+
+// Closes what is still open as far as that is safe: tiny holes, then walls inside.
+Candidate closed_further(const Surface& soup, Candidate c, double size) {
+    c.holes = close_holes(soup.vertices, c.triangles, size, measure({soup.vertices, c.triangles}).area);
+    c.triangles.insert(c.triangles.end(), c.holes.patches.begin(), c.holes.patches.end());
+    c.odd_edges = count_odd_edges(c.triangles);
+    if (c.odd_edges == 0) return c;
+    std::vector<Triangle> skin = without_inner_walls(soup.vertices, c.triangles);
+    c.inner = c.triangles.size() - skin.size();
+    c.triangles = std::move(skin);
+    c.odd_edges = count_odd_edges(c.triangles);
+    return c;
+}
+
+// With the least of joining, patching and removing that closes the surface; the closest to closed if nothing does.
+Candidate close_surface(const Surface& soup, double size) {
+    std::vector<Candidate> candidates;
+    for (const double join : kJoin) {
+        candidates.push_back(join_vertices(soup, join * size));
+        if (candidates.back().odd_edges == 0) return candidates.back();
+    }
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        candidates[i] = closed_further(soup, std::move(candidates[i]), size);
+        if (candidates[i].odd_edges == 0) return candidates[i];
+        if (candidates[i].better_than(candidates[best])) best = i;
+    }
+    return candidates[best];
+}
+
+void note_closing(const Candidate& c, double size, std::vector<std::string>& notes) {
+    if (c.join > kJoin[0] * size) {
+        notes.push_back("joined vertices up to " + length_text(c.join) + " apart to close the surface");
+    }
+    if (c.collapsed) notes.push_back("removed " + count_of(c.collapsed, "triangle") + " without area");
+    if (c.copies) notes.push_back("removed " + count_of(c.copies, "repeated triangle"));
+    if (!c.walls.empty())
+        notes.push_back("removed " + count_of(c.walls.size(), "triangle") +
+                        " lying back to back (walls between pieces)");
+    if (c.holes.closed) {
+        notes.push_back("closed " + count_of(c.holes.closed, "hole") + " of at most " + length_text(c.holes.widest) +
+                        ", near " + place(c.holes.place));
+    }
+    if (c.holes.cracks) {
+        notes.push_back("closed " + count_of(c.holes.cracks, "crack") + " at most " + length_text(kCrackWidth * size) +
+                        " wide" + (c.holes.closed ? std::string() : ", near " + place(c.holes.place)));
+    }
+    if (c.inner) {
+        notes.push_back("removed " + count_of(c.inner, "triangle") +
+                        " of walls inside the shape (water cannot reach them)");
+    }
+}
+
+void note_cuts(const Cuts& cuts, std::vector<std::string>& notes) {
+    if (cuts.within) {
+        notes.push_back("the surface cuts through itself: " + count_of(cuts.within, "pair") + " of triangles, near " +
+                        place(cuts.within_at) +
+                        "; the flow does not mind, but volume and buoyancy count what overlaps twice");
+    }
+    if (cuts.between) {
+        notes.push_back("pieces run into each other: " + count_of(cuts.between, "pair") + " of triangles, near " +
+                        place(cuts.between_at) +
+                        "; the flow does not mind, but volume and buoyancy count what overlaps twice");
+    }
+    if (!cuts.complete) notes.push_back("whether the surface cuts through itself was not looked at everywhere");
 }
 
 bool is_planar(const Surface& soup, const std::vector<Triangle>& triangles, double size) {
@@ -112,39 +177,6 @@ bool is_planar(const Surface& soup, const std::vector<Triangle>& triangles, doub
             return std::fabs(dot(soup.vertices[v] - on_plane, normal)) <= kFlat * size * norm;
         });
     });
-}
-
-[[noreturn]] void refuse_flat(const std::string& name, const std::string& what) {
-    throw BakeError(name + ": " + what +
-                    " is a flat sheet without thickness, so water has no inside to be kept out of; give it a "
-                    "thickness (Blender: Solidify modifier, apply it) and export again");
-}
-
-[[noreturn]] void refuse_open(const std::string& name, const Surface& soup, const std::vector<Triangle>& triangles) {
-    const std::vector<HalfEdge> half_edges = sorted_half_edges(triangles);
-    std::size_t boundary = 0, shared = 0;
-    const HalfEdge* first_boundary = nullptr;
-    const HalfEdge* first_shared = nullptr;
-    std::size_t first_shared_by = 0;
-    for (std::size_t i = 0, j = 0; i < half_edges.size(); i = j) {
-        j = edge_end(half_edges, i);
-        if (j - i == 1 && boundary++ == 0) first_boundary = &half_edges[i];
-        if (j - i > 2 && shared++ == 0) {
-            first_shared = &half_edges[i];
-            first_shared_by = j - i;
-        }
-    }
-    const auto middle = [&](const HalfEdge& e) { return place((soup.vertices[e.low] + soup.vertices[e.high]) * 0.5); };
-    if (first_boundary) {
-        throw BakeError(name + ": the surface is open: " + count_of(boundary, "boundary edge") + ", the first at " +
-                        middle(*first_boundary) +
-                        "; close the holes (Blender: select all, Mesh > Clean Up > Fill Holes; a shape "
-                        "of sheets needs a Solidify modifier) and export again");
-    }
-    throw BakeError(
-        name + ": " + count_of(shared, "edge") + " shared by more than two triangles, the first at " +
-        middle(*first_shared) + " by " + std::to_string(first_shared_by) +
-        "; remove inner walls and loose faces there (Blender: Select > All by Trait > Non Manifold) and export again");
 }
 
 // Turns the longest edge of triangles that have no height over it: their middle corner then splits the neighbour. The
@@ -220,35 +252,14 @@ Repaired repair(const Surface& soup, const std::string& name) {
         throw BakeError(name + ": all its vertices are one point, or not finite; export it again");
 
     Repaired result;
-    Candidate best = join_vertices(soup, kJoin[0] * size);
-    for (std::size_t i = 1; i < std::size(kJoin) && best.odd_edges != 0; ++i) {
-        Candidate wider = join_vertices(soup, kJoin[i] * size);
-        if (wider.odd_edges == 0) best = std::move(wider);
-    }
-    if (best.triangles.empty() || is_planar(soup, best.triangles, size)) refuse_flat(name, "the shape");
-    if (best.odd_edges != 0) refuse_open(name, soup, best.triangles);
-    if (best.join > kJoin[0] * size) {
-        char text[96];
-        std::snprintf(text, sizeof text, "joined vertices up to %.3g mm apart to close the surface", best.join * 1000);
-        result.notes.push_back(text);
-    }
-    if (best.collapsed) result.notes.push_back("removed " + count_of(best.collapsed, "triangle") + " without area");
-    if (best.copies) result.notes.push_back("removed " + count_of(best.copies, "repeated triangle"));
-    if (best.walls) {
-        result.notes.push_back("removed " + count_of(best.walls, "triangle") +
-                               " lying back to back (inner walls or sheets)");
-    }
+    Candidate best = close_surface(soup, size);
+    if (best.triangles.empty() || is_planar(soup, best.triangles, size)) refuse_flat(name, "the shape", soup, soup);
+    if (best.odd_edges != 0) refuse_open(name, soup, best.triangles, size);
+    note_closing(best, size, result.notes);
 
     Shells shells(soup.vertices, std::move(best.triangles));
-    if (const HalfEdge* edge = shells.unpaired()) {
-        throw BakeError(
-            name + ": an edge at " + place((soup.vertices[edge->low] + soup.vertices[edge->high]) * 0.5) +
-            " is shared by four triangles or more of one piece; separate what touches there and export again");
-    }
-    if (const Triangle* t = shells.make_consistent()) {
-        throw BakeError(name + ": the surface has only one side (as a Moebius strip or Klein bottle) near " +
-                        place(soup.vertices[(*t)[0]]) + "; model it with an inside and an outside");
-    }
+    if (shells.unpaired()) refuse_crowded(name, soup, shells.triangles(), *shells.unpaired());
+    if (const Triangle* t = shells.make_consistent()) refuse_one_sided(name, soup, *t);
     if (shells.turned())
         result.notes.push_back("turned " + count_of(shells.turned(), "triangle") +
                                " the same way round as their neighbours");
@@ -256,7 +267,8 @@ Repaired repair(const Surface& soup, const std::string& name) {
         const SurfaceProperties p = shells.properties(s);
         const Vec3d e = p.high - p.low;
         if (2 * std::fabs(p.volume) <= kFlat * std::max({e.x, e.y, e.z}) * p.area) {
-            refuse_flat(name, shells.count() == 1 ? std::string("the shape") : "the piece near " + place(p.low));
+            refuse_flat(name, shells.count() == 1 ? std::string("the shape") : "the piece near " + place(p.low), soup,
+                        shells.piece(s));
         }
     }
     if (const std::uint32_t inward = shells.turn_outward())
@@ -267,11 +279,17 @@ Repaired repair(const Surface& soup, const std::string& name) {
     }
     result.shells = shells.count();
     result.surface = shells.surface();
+    // Back to back between two pieces is a wall that went; back to back in the water is a sheet that matters.
+    const std::vector<Triangle> sheet = middles_outside(result.surface, soup.vertices, best.walls);
+    if (!sheet.empty())
+        refuse_flat(name, "the piece near " + place(soup.vertices[sheet[0][0]]), soup, {soup.vertices, sheet});
 
     std::size_t left = 0;
     const std::size_t flat = remove_flat_triangles(result.surface, left);
     if (flat) result.notes.push_back("turned an edge of " + count_of(flat, "triangle") + " without height");
     if (left) result.notes.push_back("left " + count_of(left, "triangle") + " without height");
+    result.cuts = find_cuts(result.surface);
+    note_cuts(result.cuts, result.notes);
     return result;
 }
 

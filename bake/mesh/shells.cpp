@@ -5,13 +5,42 @@
 #include <limits>
 #include <numeric>
 
+#include "bake/mesh/tree.h"
+
 namespace frm::bake {
 
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// How often a closed surface winds around a point: 1 inside, 0 outside (van Oosterom and Strackee's solid angles).
+bool box_inside(const SurfaceProperties& inner, const SurfaceProperties& outer) {
+    for (int i = 0; i < 3; ++i) {
+        if (inner.low[i] < outer.low[i] || inner.high[i] > outer.high[i]) return false;
+    }
+    return true;
+}
+
+constexpr std::size_t kMostAngles = 30'000'000;  // solid angles in one search, a second or two
+
+// The step through `count` points that costs no more than that.
+std::size_t step_through(std::size_t count, const Surface& surface) {
+    return count / std::max<std::size_t>(16, kMostAngles / surface.triangles.size()) + 1;
+}
+
+// Takes what it costs from `budget`; what that does not suffice for is not inside.
+bool vertices_inside(const Surface& inner, const Surface& outer, std::size_t& budget) {
+    const std::size_t step = step_through(inner.vertices.size(), outer);
+    for (std::size_t v = 0; v < inner.vertices.size(); v += step) {
+        if (budget < outer.triangles.size()) return false;
+        budget -= outer.triangles.size();
+        if (winding(outer, inner.vertices[v]) < 0.75) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+// Solid angles of van Oosterom and Strackee (1983).
 double winding(const Surface& surface, const Vec3d& point) {
     double angle = 0;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -24,25 +53,17 @@ double winding(const Surface& surface, const Vec3d& point) {
     return angle / (4 * 3.14159265358979323846);
 }
 
-bool box_inside(const SurfaceProperties& inner, const SurfaceProperties& outer) {
-    for (int i = 0; i < 3; ++i) {
-        if (inner.low[i] < outer.low[i] || inner.high[i] > outer.high[i]) return false;
+std::vector<Triangle> middles_outside(const Surface& surface, const std::vector<Vec3d>& vertices,
+                                      const std::vector<Triangle>& triangles) {
+    std::vector<Triangle> result;
+    const std::size_t step = step_through(triangles.size(), surface);
+    for (std::size_t i = 0; i < triangles.size(); i += step) {
+        const Triangle& t = triangles[i];
+        const Vec3d middle = (vertices[t[0]] + vertices[t[1]] + vertices[t[2]]) / 3.0;
+        if (winding(surface, middle) < 0.75) result.push_back(t);
     }
-    return true;
+    return result;
 }
-
-// Every vertex, or for large pieces as many, evenly spread, as a second or two allows.
-bool vertices_inside(const Surface& inner, const Surface& outer) {
-    constexpr std::size_t most_angles = 30'000'000;
-    const std::size_t allowed = std::max<std::size_t>(16, most_angles / outer.triangles.size());
-    const std::size_t step = inner.vertices.size() / allowed + 1;
-    for (std::size_t v = 0; v < inner.vertices.size(); v += step) {
-        if (winding(outer, inner.vertices[v]) < 0.75) return false;
-    }
-    return true;
-}
-
-}  // namespace
 
 Shells::Shells(const std::vector<Vec3d>& vertices, std::vector<Triangle> triangles)
     : vertices_(vertices),
@@ -190,13 +211,26 @@ std::uint32_t Shells::remove_inner() {
         pieces.push_back(piece(s));
         boxes.push_back(measure(pieces.back()));
     }
-    std::vector<char> inner(count_, 0);
+    // A tree over the pieces' boxes, each as a triangle from corner to corner.
+    std::vector<Vec3d> corners;
+    std::vector<Triangle> diagonals;
     for (std::uint32_t s = 0; s < count_; ++s) {
-        for (std::uint32_t t = 0; t < count_ && !inner[s]; ++t) {
+        corners.push_back(boxes[s].low);
+        corners.push_back(boxes[s].high);
+        diagonals.push_back({2 * s, 2 * s + 1, 2 * s});
+    }
+    const Tree tree(corners, diagonals);
+    std::vector<char> inner(count_, 0);
+    std::size_t budget = 3 * kMostAngles;
+    for (std::uint32_t s = 0; s < count_; ++s) {
+        tree.in_box({boxes[s].low, boxes[s].low}, [&](std::uint32_t t) {
+            if (budget == 0) return false;
+            --budget;
             // Less volume: two pieces are never inside each other.
-            if (s == t || boxes[s].volume >= boxes[t].volume || !box_inside(boxes[s], boxes[t])) continue;
-            inner[s] = vertices_inside(pieces[s], pieces[t]);
-        }
+            if (s == t || boxes[s].volume >= boxes[t].volume || !box_inside(boxes[s], boxes[t])) return true;
+            inner[s] = vertices_inside(pieces[s], pieces[t], budget);
+            return !inner[s];
+        });
     }
     std::uint32_t kept = 0;
     for (std::uint32_t s = 0; s < count_; ++s) {

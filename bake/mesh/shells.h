@@ -10,6 +10,14 @@
 
 namespace frm::bake {
 
+/// How often closed, outward pieces wind around a point: 1 inside, 0 outside, 2 where two of them overlap.
+double winding(const Surface& surface, const Vec3d& point);
+
+/// Those of `triangles` (of `vertices`) whose middle lies outside of closed, outward pieces. Of very many triangles only
+/// some are looked at, evenly chosen: as many as a second or two allows, 16 at least.
+std::vector<Triangle> middles_outside(const Surface& surface, const std::vector<Vec3d>& vertices,
+                                      const std::vector<Triangle>& triangles);
+
 /// Used by repair() in the order of the members. Every edge of the triangles must have an even number of them.
 class Shells {
 public:
@@ -24,12 +32,15 @@ public:
     std::size_t turned() const { return turned_; }
 
     std::uint32_t count() const { return count_; }
+    const std::vector<Triangle>& triangles() const { return triangles_; }  ///< of all shells, removed ones too
+    Surface piece(std::uint32_t shell) const;                              ///< with vertices of its own
     SurfaceProperties properties(std::uint32_t shell) const;  ///< the volume is negative where the shell faces inward
 
     /// Returns how many shells were turned round.
     std::uint32_t turn_outward();
 
-    /// Removes shells that lie wholly inside another one; all must face outward. Returns how many.
+    /// Removes shells that lie wholly inside another one; all must face outward. Returns how many. Among hundreds of
+    /// thousands of tangled shells some inner ones may be left: the search ends after some 20 seconds.
     std::uint32_t remove_inner();
 
     /// The shells one after the other, each with its own vertices, in the order of their first triangles.
@@ -41,7 +52,6 @@ private:
     };
 
     void pair_edges();
-    Surface piece(std::uint32_t shell) const;
 
     const std::vector<Vec3d>& vertices_;
     std::vector<Triangle> triangles_;

@@ -17,6 +17,8 @@
 
 using namespace frm;
 using namespace frm::bake;
+using test::inside_out;
+using test::joined;
 
 namespace {
 
@@ -98,18 +100,6 @@ std::string error_of(const std::function<void()>& run) {
         return e.what();
     }
     return "";
-}
-
-Surface joined(Surface a, const Surface& b) {
-    const auto base = static_cast<std::uint32_t>(a.vertices.size());
-    a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-    for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-    return a;
-}
-
-Surface inside_out(Surface s) {
-    for (Triangle& t : s.triangles) std::swap(t[1], t[2]);
-    return s;
 }
 
 // Every triangle with vertices of its own, as an exporter of flat shaded faces writes them.
@@ -544,13 +534,6 @@ TEST_CASE("what cannot be baked is refused", "[repair]") {
     fin.vertices.push_back({0, 0, 3});
     fin.triangles.push_back({4, 5, 8});
     has(refusal(fin), "open: 2 boundary edges");
-
-    // Three pages on one spine, closed at the other side: no boundary, but edges of three triangles.
-    Surface pages;
-    pages.vertices = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {-1, 1, 0.5}, {-1, -1, 0.5}};
-    pages.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 2, 3}, {0, 3, 4},
-                       {0, 4, 2}, {1, 2, 3}, {1, 3, 4}, {1, 4, 2}};
-    has(refusal(pages), "more than two triangles");
 
     // A Klein bottle: a torus grid glued with a flip.
     Surface klein;

@@ -105,4 +105,16 @@ inline Surface moved(Surface surface, const Vec3d& by) {
     return surface;
 }
 
+inline Surface joined(Surface a, const Surface& b) {
+    const auto base = static_cast<std::uint32_t>(a.vertices.size());
+    a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+    for (const bake::Triangle& t : b.triangles) a.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    return a;
+}
+
+inline Surface inside_out(Surface s) {
+    for (bake::Triangle& t : s.triangles) std::swap(t[1], t[2]);
+    return s;
+}
+
 }  // namespace frm::test
