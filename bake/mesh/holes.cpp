@@ -96,15 +96,18 @@ public:
     Holes close() {
         double work = 0, patched = 0;
         for (const Rim& rim : find_rims(triangles_)) {
+            // No patch is smaller than the rim's shadow, so most that are too large are known without making one.
+            const double extent = rim_extent(vertices_, rim);
+            const double crack_area = 0.5 * extent * kCrackWidth * size_;
+            const double most = std::min(kHoleArea * area_, extent > kHoleExtent * size_ ? crack_area : HUGE_VAL);
+            if (0.5 * length(rim_area(vertices_, rim)) > most) continue;
             const auto n = static_cast<double>(rim.size());
             if (rim.size() > kLongestRim || (work += n * n * n) > kMostWork) continue;
             LeastArea patch(vertices_, rim, [&](std::uint32_t a, std::uint32_t b) {
                 return !find_edge(half_edges_, edge(a, b)) && made_.count(edge(a, b)) == 0;
             });
-            if (patch.triangles().empty()) continue;
-            const double extent = rim_extent(vertices_, rim);
-            const bool crack = patch.area() <= 0.5 * extent * kCrackWidth * size_;
-            if (patch.area() > kHoleArea * area_ || (!crack && extent > kHoleExtent * size_)) continue;
+            if (patch.triangles().empty() || patch.area() > most) continue;
+            const bool crack = patch.area() <= crack_area;
             if (!is_safe(patch.triangles(), crack)) continue;
             if ((patched += patch.area()) > kAllHolesArea * area_) return {};
             take(patch.triangles(), rim, crack, extent);

@@ -8,11 +8,12 @@
 
 namespace frm::bake {
 
-/// A hole is closed where its patch has at most this share of the surface's area ...
+/// A hole is closed where its patch has at most this share of the surface's area: that of one cell of the flow's grid at
+/// standard quality (16 cells across the root of the shadow, a quarter of the area), so that the water could not tell
+/// the patch from the true surface ...
 inline constexpr double kHoleArea = 0.001;
-/// ... and its rim is at most this share of the size (the longest side of the bounding box) across: about one cell of
-/// the flow's grid, so that the water could not tell the patch from the true surface. Longer ones are closed if they are
-/// cracks, no wider on average than kCrackWidth of the size: seams whose two sides have different vertices.
+/// ... and its rim is at most this share of the size (the longest side of the bounding box) across, or it is a crack: no
+/// wider on average than kCrackWidth of the size, a seam whose two sides have different vertices.
 inline constexpr double kHoleExtent = 0.05;
 inline constexpr double kCrackWidth = 1e-4;
 /// All patches together, share of the area; a surface with more is in shreds and left as it is.
