@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/file.h"
+#include "cli/problem_file.h"
 #include "cli/progress.h"
 #include "core/map/codec.h"
 
@@ -38,7 +39,7 @@ void run(Options& o) {
     o.bake.quality = quality_of(o.quality);
     require_distinct({o.out}, {o.bake.mesh});
     require_writable(o.out);
-    const bake::BakePlan plan = bake::plan_bake(o.bake);
+    const bake::BakePlan plan = load_or_show(o.bake.mesh, o.out, [&] { return bake::plan_bake(o.bake); });
     print_plan(plan);
     bake::BakeReport report;
     std::unique_ptr<Map> map;

@@ -21,6 +21,7 @@ struct Unsuccessful {};
 void add_bake(CLI::App& app);
 void add_info(CLI::App& app);
 void add_verify(CLI::App& app);
+void add_mesh(CLI::App& app);
 void add_flow(CLI::App& app);
 void add_force(CLI::App& app);
 void add_run(CLI::App& app);

@@ -10,6 +10,7 @@
 #include "cli/file.h"
 #include "cli/flow_report.h"
 #include "cli/flow_results.h"
+#include "cli/problem_file.h"
 #include "cli/progress.h"
 
 namespace frm::cli {
@@ -176,7 +177,7 @@ void run(Options& o) {
     if (!o.out.empty()) require_writable(o.out);
 
     std::vector<std::string> notes;
-    const bake::Surface surface = bake::load_surface(o.mesh, notes);
+    const bake::Surface surface = load_or_show(o.mesh, o.out, [&] { return bake::load_surface(o.mesh, notes); });
     complete(o, surface);
     const bake::FlowPlan plan = bake::plan_flow(surface, o.flow);
     const std::unique_ptr<FlowReport> report = o.report.empty() ? nullptr : std::make_unique<FlowReport>(o.report);

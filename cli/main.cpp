@@ -34,6 +34,7 @@ void add_commands(CLI::App& app) {
                          std::to_string(FRM_VERSION_MAJOR) + "." + std::to_string(FRM_VERSION_MINOR) + "." +
                              std::to_string(FRM_VERSION_PATCH),
                          "the version");
+    frm::cli::add_mesh(app);
     frm::cli::add_bake(app);
     frm::cli::add_info(app);
     frm::cli::add_verify(app);
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
     let_threads_sleep(argc, argv);
     CLI::App app{
         "frm - the force of water on moving rigid objects.\n\n"
+        "  frm mesh paddle.glb                    is the mesh fit for it?\n"
         "  frm bake paddle.glb -o paddle.frm      solve the flow around an object once\n"
         "  frm info paddle.frm                    what the map holds\n"
         "  frm force paddle.frm --velocity 0,1,0  what it feels when it moves\n"

@@ -177,6 +177,26 @@ void Nest::empty_solid(std::size_t row) {
     }
 }
 
+/// Inside the next finer block only its own nodes hold the flow. Returns the block that was read.
+std::size_t Nest::read_node(std::size_t l, const std::array<int, 3>& at, const Fields& out) const {
+    if (l > 0) {
+        std::array<int, 3> finer{};
+        bool inside = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto a = static_cast<std::size_t>(axis);
+            const Grid& grid = levels_[l - 1].grid;
+            const bool whole = axis == 2 && grid.periodic && grid.nz == 1;
+            finer[a] = whole ? 0 : 2 * (at[a] + domain_.blocks[l].first[a]) - domain_.blocks[l - 1].first[a];
+            inside = inside && finer[a] >= 0 && finer[a] < grid.size(axis);
+        }
+        if (inside) return read_node(l - 1, finer, out);
+    }
+    // The copy not in use is that of the step before, walls included: what this step pulled from.
+    observe(levels_[l].grid, *levels_[l].to, at[0], at[1], at[2], 1,
+            static_cast<float>(domain_.relaxation(static_cast<int>(l))), smagorinsky, out);
+    return l;
+}
+
 bool Nest::sample(const Vec3d& point, std::array<float, field_count>& fields) const {
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const Level& level = levels_[l];
@@ -211,10 +231,11 @@ bool Nest::sample(const Vec3d& point, std::array<float, field_count>& fields) co
             if (share == 0) continue;
             at[2] = grid.wrap(at[2]);
             if (l == 0 && is_solid_[grid.index(at[0], at[1], at[2])] != 0) continue;
-            // The copy not in use is that of the step before, walls included: what this step pulled from.
-            observe(grid, *level.to, at[0], at[1], at[2], 1, static_cast<float>(domain_.relaxation(static_cast<int>(l))),
-                    smagorinsky, out);
-            for (std::size_t f = 0; f < field_count; ++f) sum[f] += share * static_cast<double>(one[f]);
+            const std::size_t read = read_node(l, {at[0], at[1], at[2]}, out);
+            const double finer = cell / static_cast<double>(std::uint64_t{1} << read);
+            for (std::size_t f = 0; f < field_count; ++f) {
+                sum[f] += share * static_cast<double>(one[f]) * (f < 4 ? 1.0 : finer);
+            }
             weights += share;
         }
         if (weights < 0.5) return false;

@@ -51,6 +51,7 @@ private:
         bool second = false;     // of two in the coarser block's step
     };
 
+    std::size_t read_node(std::size_t level, const std::array<int, 3>& at, const Fields& fields) const;
     void advance_level(std::size_t level);
     void walls();
     void bulk(std::size_t level);

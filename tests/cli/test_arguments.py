@@ -8,6 +8,7 @@ from conftest import PROGRAM
 OPTIONS = {
     "bake": ["MESH", "--out", "--quality", "draft|standard|high", "--speed", "--directions", "--sources",
              "--resolution", "--threads", "--density", "--viscosity", "--json"],
+    "mesh": ["MESH", "--out", "--json"],
     "info": ["FILE", "--json"],
     "verify": ["FILE", "--json"],
     "flow": ["MESH", "--direction", "--speed", "--viscosity", "--density", "--section", "--length",
@@ -96,6 +97,8 @@ def test_version(good):
     ("--resolution|1e9|512", ["bake", "a.glb", "-o", "b.frm", "--resolution", "1e9"]),
     ("--resolution|nan", ["bake", "a.glb", "-o", "b.frm", "--resolution", "nan"]),
     ("--threads|-1", ["bake", "a.glb", "-o", "b.frm", "--threads", "-1"]),
+    ("--jsonn|no such option", ["mesh", "a.glb", "--jsonn"]),
+    ("MESH", ["mesh"]),
     ("--record|empty", ["run", "a.json", "--record", ""]),
     ("FILE|empty", ["info", ""]),
     ("--seconds|0", ["run", "a.json", "--seconds", "0"]),
@@ -108,7 +111,7 @@ def test_wrong_arguments(refused, words, arguments, tmp_path):
 
 @pytest.mark.parametrize("arguments", [
     ["info", "no.frm"], ["verify", "no.frm"], ["force", "no.frm", "--velocity", "1,0,0"], ["run", "no.frm"],
-    ["replay", "no.frm"], ["bake", "no.frm", "-o", "b.frm"],
+    ["replay", "no.frm"], ["mesh", "no.frm"], ["bake", "no.frm", "-o", "b.frm"],
     ["flow", "no.frm", "--direction", "1,0,0", "--speed", "1"]])
 def test_a_file_that_is_not_there(refused, arguments, tmp_path):
     refused(1, "no.frm", *arguments, cwd=tmp_path)

@@ -59,18 +59,19 @@ def draco():
     return glb(extensionsUsed=["KHR_draco_mesh_compression"], extensionsRequired=["KHR_draco_mesh_compression"])
 
 
-@pytest.mark.parametrize("content, words", [
-    (cube_without_a_side(), "open|edge"), (flat_sheet(), "thick"), (draco(), "Draco|without compression"),
-    (b"solid not a gltf\n" * 4, "mesh.glb"), (b"", "mesh.glb"), (glb()[:200], "cut off|again"),
-    (glb(vertices=[tuple(1e12 * c for c in v) for v in CUBE]), "mesh.glb"),
+@pytest.mark.parametrize("content, words, shown", [
+    (cube_without_a_side(), "open|edge|mesh.problem.glb", True), (flat_sheet(), "thick|mesh.problem.glb", True),
+    (draco(), "Draco|without compression", False), (b"solid not a gltf\n" * 4, "mesh.glb", False),
+    (b"", "mesh.glb", False), (glb()[:200], "cut off|again", False),
+    (glb(vertices=[tuple(1e12 * c for c in v) for v in CUBE]), "mesh.glb", False),
 ], ids=["open", "flat", "draco", "text", "empty", "truncated", "huge"])
 @pytest.mark.parametrize("command", ["bake", "flow"])
-def test_refused_meshes(refused, tmp_path, command, content, words):
+def test_refused_meshes(refused, tmp_path, command, content, words, shown):
     mesh = tmp_path / "mesh.glb"
     mesh.write_bytes(content)
     options = SMALL if command == "bake" else ["--direction", "1,0,0", "--speed", "1"]
     refused(1, "mesh.glb|" + words, command, mesh, "-o", tmp_path / "out", *options)
-    assert names(tmp_path) == ["mesh.glb"]
+    assert names(tmp_path) == ["mesh.glb"] + ["mesh.problem.glb"] * shown
 
 
 def test_a_folder_that_is_not_there_fails_before_the_work(refused, box, tmp_path):
@@ -97,7 +98,8 @@ def test_an_older_file_stays_when_it_fails(frm, tmp_path):
     mesh = tmp_path / "mesh.glb"
     mesh.write_bytes(cube_without_a_side())
     assert frm("bake", mesh, "-o", tmp_path / "b.frm", *SMALL).status == 1
-    assert (tmp_path / "b.frm").read_text() == "older" and names(tmp_path) == ["b.frm", "mesh.glb"]
+    assert (tmp_path / "b.frm").read_text() == "older"
+    assert names(tmp_path) == ["b.frm", "mesh.glb", "mesh.problem.glb"]
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

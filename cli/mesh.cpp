@@ -1,0 +1,102 @@
+// frm mesh: what the bake makes of a mesh, without solving anything.
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bake/mesh/glb_writer.h"
+#include "bake/mesh/gltf.h"
+#include "bake/mesh/repair.h"
+#include "bake/mesh/thickness.h"
+#include "cli/command.h"
+#include "cli/file.h"
+#include "cli/problem_file.h"
+
+namespace frm::cli {
+namespace {
+
+struct Options {
+    std::string mesh, out;
+    bool json = false;
+};
+
+nlohmann::ordered_json vec(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+void print_json(const Options& o, const bake::Repaired& r, const bake::SurfaceProperties& shape,
+                const bake::Thickness& thickness) {
+    nlohmann::ordered_json j;
+    j["file"] = o.mesh;
+    j["triangles"] = r.surface.triangles.size();
+    j["vertices"] = r.surface.vertices.size();
+    j["shells"] = r.shells;
+    j["low"] = vec(shape.low);
+    j["high"] = vec(shape.high);
+    j["size"] = vec(shape.high - shape.low);
+    j["area"] = shape.area;
+    j["volume"] = shape.volume;
+    j["centroid"] = vec(shape.centroid);
+    j["thinnest"] = thickness.thinnest;
+    j["thinnest_at"] = vec(thickness.thinnest_at);
+    j["median_thickness"] = thickness.median;
+    j["cuts_within"] = r.cuts.within;
+    j["cuts_between"] = r.cuts.between;
+    j["notes"] = r.notes;
+    std::printf("%s\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, const bake::Thickness& thickness) {
+    const Vec3d size = shape.high - shape.low;
+    // What is left of rounding, to be read as the zero that it is.
+    const auto tidy = [&](double x) { return std::fabs(x) < 1e-9 * length(size) ? 0.0 : x; };
+    std::printf("size       %.4g x %.4g x %.4g m, from (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g)\n", size.x, size.y,
+                size.z, shape.low.x, shape.low.y, shape.low.z, shape.high.x, shape.high.y, shape.high.z);
+    std::printf("surface    %zu triangles, %.4g m^2, %u closed piece%s\n", r.surface.triangles.size(), shape.area,
+                r.shells, r.shells == 1 ? "" : "s");
+    std::printf("volume     %.4g m^3, centroid (%.4g, %.4g, %.4g) m\n", shape.volume, tidy(shape.centroid.x),
+                tidy(shape.centroid.y), tidy(shape.centroid.z));
+    if (thickness.thinnest > 0) {
+        std::printf(
+            "thickness  %.4g mm where it is thinnest (1 %% of the surface), near (%.4g, %.4g, %.4g); median %.4g mm\n",
+            thickness.thinnest * 1000, thickness.thinnest_at.x, thickness.thinnest_at.y, thickness.thinnest_at.z,
+            thickness.median * 1000);
+    }
+    for (const std::string& note : r.notes) std::printf("note       %s\n", note.c_str());
+    if (r.notes.empty()) std::printf("repairs    none needed\n");
+}
+
+void run(const Options& o) {
+    require_distinct({o.out}, {o.mesh});
+    if (!o.out.empty()) require_writable(o.out);
+    const bake::Repaired repaired =
+        load_or_show(o.mesh, o.out, [&] { return bake::repair(bake::load_gltf(o.mesh), o.mesh); });
+    if (!o.out.empty()) write_file(o.out, bake::write_glb({{"surface", {0.5, 0.5, 0.5, 1}, &repaired.surface}}, "frm"));
+    const bake::SurfaceProperties shape = bake::measure(repaired.surface);
+    const bake::Thickness thickness = bake::measure_thickness(repaired.surface);
+    if (o.json)
+        print_json(o, repaired, shape, thickness);
+    else
+        print_text(repaired, shape, thickness);
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    Options& o = *options;
+    CLI::App* command =
+        app.add_subcommand("mesh", "Shows what a bake would make of a mesh: measures, repairs, or why it is refused.");
+    command->footer(
+        "A refused shape is written to NAME.problem.glb, the place marked red, beside the output file or here.\n"
+        "  frm mesh paddle.glb");
+    command->add_option("MESH", o.mesh, "a .glb or .gltf file, in metres")
+        ->required()
+        ->check(not_empty())
+        ->type_name("");
+    command->add_option("-o,--out", o.out, "write the repaired surface to this .glb file")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command->add_flag("--json", o.json, "JSON on standard output");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace frm::cli
