@@ -137,8 +137,8 @@ void note_closing(const Candidate& c, double size, std::vector<std::string>& not
                         ", near " + place(c.holes.place));
     }
     if (c.holes.cracks) {
-        notes.push_back("closed " + count_of(c.holes.cracks, "crack") + " at most " + length_text(kCrackWidth * size) +
-                        " wide" + (c.holes.closed ? std::string() : ", near " + place(c.holes.place)));
+        notes.push_back("closed " + count_of(c.holes.cracks, "crack") + " under " + length_text(kCrackWidth * size) +
+                        " wide on average" + (c.holes.closed ? std::string() : ", near " + place(c.holes.place)));
     }
     if (c.inner) {
         notes.push_back("removed " + count_of(c.inner, "triangle") +
@@ -280,7 +280,7 @@ Repaired repair(const Surface& soup, const std::string& name) {
     result.shells = shells.count();
     result.surface = shells.surface();
     // Back to back between two pieces is a wall that went; back to back in the water is a sheet that matters.
-    const std::vector<Triangle> sheet = middles_outside(result.surface, soup.vertices, best.walls);
+    const std::vector<Triangle> sheet = reaching_outside(result.surface, soup.vertices, best.walls);
     if (!sheet.empty())
         refuse_flat(name, "the piece near " + place(soup.vertices[sheet[0][0]]), soup, {soup.vertices, sheet});
 

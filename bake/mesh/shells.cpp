@@ -53,14 +53,17 @@ double winding(const Surface& surface, const Vec3d& point) {
     return angle / (4 * 3.14159265358979323846);
 }
 
-std::vector<Triangle> middles_outside(const Surface& surface, const std::vector<Vec3d>& vertices,
-                                      const std::vector<Triangle>& triangles) {
+std::vector<Triangle> reaching_outside(const Surface& surface, const std::vector<Vec3d>& vertices,
+                                       const std::vector<Triangle>& triangles) {
     std::vector<Triangle> result;
     const std::size_t step = step_through(triangles.size(), surface);
     for (std::size_t i = 0; i < triangles.size(); i += step) {
         const Triangle& t = triangles[i];
         const Vec3d middle = (vertices[t[0]] + vertices[t[1]] + vertices[t[2]]) / 3.0;
-        if (winding(surface, middle) < 0.75) result.push_back(t);
+        bool outside = winding(surface, middle) < 0.75;
+        for (const std::uint32_t v : t)
+            outside = outside || winding(surface, vertices[v] + (middle - vertices[v]) * 0.02) < 0.75;
+        if (outside) result.push_back(t);
     }
     return result;
 }

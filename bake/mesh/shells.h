@@ -13,10 +13,11 @@ namespace frm::bake {
 /// How often closed, outward pieces wind around a point: 1 inside, 0 outside, 2 where two of them overlap.
 double winding(const Surface& surface, const Vec3d& point);
 
-/// Those of `triangles` (of `vertices`) whose middle lies outside of closed, outward pieces. Of very many triangles only
-/// some are looked at, evenly chosen: as many as a second or two allows, 16 at least.
-std::vector<Triangle> middles_outside(const Surface& surface, const std::vector<Vec3d>& vertices,
-                                      const std::vector<Triangle>& triangles);
+/// Those of `triangles` (of `vertices`) that reach out of closed, outward pieces: their middle or, a fiftieth of the way
+/// to the middle, a corner, which itself may lie on the surface. Of very many triangles only some are looked at, evenly
+/// chosen: as many as a few seconds allow, 16 at least.
+std::vector<Triangle> reaching_outside(const Surface& surface, const std::vector<Vec3d>& vertices,
+                                       const std::vector<Triangle>& triangles);
 
 /// Used by repair() in the order of the members. Every edge of the triangles must have an even number of them.
 class Shells {

@@ -156,7 +156,8 @@ private:
     // along its plane.
     bool farthest_side(const std::vector<std::uint32_t>& piece, const Vec3d& from, const Vec3d& direction,
                        std::uint32_t& space) {
-        double farthest = -1;
+        double farthest = -1e-9 * size_;  // its own triangle is at zero, give or take rounding
+        bool hit = false;
         for (const std::uint32_t t : piece) {
             const Triangle& c = triangles_[t];
             const Vec3d n = normal(t);
@@ -177,9 +178,10 @@ private:
             if (distance < farthest || least < -1e-6) continue;
             if (least < 1e-6) return false;
             farthest = distance;
+            hit = true;
             space = spaces_.find(slope > 0 ? front(t) : back(t));
         }
-        return farthest >= 0;
+        return hit;
     }
 
     bool near_line(const Triangle& c, const Vec3d& from, const Vec3d& direction) const {
@@ -212,7 +214,7 @@ bool all_inside(const std::vector<Vec3d>& vertices, const std::vector<Triangle>&
     Shells shells(vertices, kept);
     if (shells.unpaired() || shells.make_consistent()) return false;
     shells.turn_outward();
-    return middles_outside(shells.surface(), vertices, removed).empty();
+    return reaching_outside(shells.surface(), vertices, removed).empty();
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ TEST_CASE("cracks of any length are closed", "[repair][holes]") {
         }
         box.triangles.push_back({before, 1, 5});
         const Repaired closed = repair(box, "crack");
-        CHECK(mentions(closed.notes, "closed 1 crack at most 0.1 mm wide, near (-0.5, -0.5, -0.5) m"));
+        CHECK(mentions(closed.notes, "closed 1 crack under 0.1 mm wide on average, near (-0.5, -0.5, -0.5) m"));
         CHECK(measure(closed.surface).volume == Approx(1).epsilon(1e-4));
         CHECK(closed.cuts.within == 0);
     }
@@ -238,6 +238,12 @@ TEST_CASE("walls that are not inside are refused and marked", "[repair][walls]")
     CHECK(has(through, ", 0.5) m by 3"));
     REQUIRE(through.marks().edges.size() == 4);
     for (const auto& edge : through.marks().edges) CHECK((edge[0].z == 0.5 && edge[1].z == 0.5));
+
+    // Loose in the box, with its middle inside and a corner out of it.
+    Surface poking = box;
+    for (const Vec3d& v : {Vec3d(0, 0, 0), Vec3d(0.2, 0, 0.1), Vec3d(0.1, 0.9, 0.1)}) poking.vertices.push_back(v);
+    poking.triangles.push_back({8, 9, 10});
+    CHECK(has(refusal(poking), "open sheet without thickness (a sail, a leaf, one side of a plate): 3 boundary edges"));
 
     // Two tubes of one piece along one edge: which belongs to which cannot be told.
     Surface pinched = joined(box, test::moved(box, {1, 1, 0}));
