@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 #include <tuple>
 
@@ -255,10 +256,17 @@ Repaired repair(const Surface& soup, const std::string& name) {
     Candidate best = close_surface(soup, size);
     if (best.triangles.empty() || is_planar(soup, best.triangles, size)) refuse_flat(name, "the shape", soup, soup);
     if (best.odd_edges != 0) refuse_open(name, soup, best.triangles, size);
+    auto parts = std::make_unique<Shells>(soup.vertices, best.triangles);
+    if (parts->unpaired()) {
+        // Four at an edge close nothing off by themselves; two of them may be those of a wall inside.
+        std::vector<Triangle> skin = without_inner_walls(soup.vertices, best.triangles);
+        best.inner += best.triangles.size() - skin.size();
+        best.triangles = std::move(skin);
+        parts = std::make_unique<Shells>(soup.vertices, best.triangles);
+    }
+    Shells& shells = *parts;
+    if (shells.unpaired()) refuse_crowded(name, soup, best.triangles, *shells.unpaired());
     note_closing(best, size, result.notes);
-
-    Shells shells(soup.vertices, std::move(best.triangles));
-    if (shells.unpaired()) refuse_crowded(name, soup, shells.triangles(), *shells.unpaired());
     if (const Triangle* t = shells.make_consistent()) refuse_one_sided(name, soup, *t);
     if (shells.turned())
         result.notes.push_back("turned " + count_of(shells.turned(), "triangle") +

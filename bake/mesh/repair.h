@@ -20,7 +20,8 @@ struct Repaired {
 /// Makes `soup` closed and oriented. In this order:
 /// - vertices within a millionth of the size are joined, up to a ten-thousandth where that closes the surface;
 /// - triangles without area, copies of a triangle, and walls between two pieces that share a face are removed;
-/// - where the surface is still open, tiny holes are closed (holes.h has the limits), then walls inside are removed;
+/// - where the surface is still open, tiny holes are closed (holes.h has the limits);
+/// - where edges have more than two triangles, walls inside are removed;
 /// - each shell is made consistent and turned outward;
 /// - a shell wholly inside another is removed, whichever way it faces, as no water reaches it: a sealed cavity is
 ///   filled (it displaces water as if it were solid).

@@ -33,8 +33,7 @@ public:
     std::size_t turned() const { return turned_; }
 
     std::uint32_t count() const { return count_; }
-    const std::vector<Triangle>& triangles() const { return triangles_; }  ///< of all shells, removed ones too
-    Surface piece(std::uint32_t shell) const;                              ///< with vertices of its own
+    Surface piece(std::uint32_t shell) const;                 ///< with vertices of its own
     SurfaceProperties properties(std::uint32_t shell) const;  ///< the volume is negative where the shell faces inward
 
     /// Returns how many shells were turned round.

@@ -191,6 +191,19 @@ TEST_CASE("walls inside are removed", "[repair][walls]") {
     CHECK(turned.surface.triangles.size() == 28);
     CHECK(measure(turned.surface).volume == Approx(3));
 
+    // A bulkhead of two sheets that bulge apart: four triangles at each edge of its rim, so nothing is open.
+    Surface bulging = joined(box, open);
+    bulging.triangles.erase(bulging.triangles.begin() + 2, bulging.triangles.begin() + 4);  // its side at +x
+    bulging.vertices.push_back({0.4, 0, 0});
+    bulging.vertices.push_back({0.6, 0, 0});
+    for (const std::uint32_t tip : {16u, 17u}) {
+        for (const Triangle& t : {Triangle{1, 3, tip}, {3, 7, tip}, {7, 5, tip}, {5, 1, tip}})
+            bulging.triangles.push_back(t);
+    }
+    const Repaired flush = repair(bulging, "hull");
+    CHECK(mentions(flush.notes, "removed 8 triangles of walls inside"));
+    CHECK(measure(flush.surface).volume == Approx(2));
+
     // Three pages on one spine, all inside the double pyramid whose edges they share.
     Surface pages;
     pages.vertices = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {-1, 1, 0.5}, {-1, -1, 0.5}};
