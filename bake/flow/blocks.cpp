@@ -65,7 +65,11 @@ std::vector<Block> plan_blocks(const BlockRequest& q) {
             } else {
                 const double from = std::min(q.low[axis] - before[axis], low[axis] - gap);
                 const double to = std::max(q.high[axis] + after[axis], high[axis] + gap);
-                if (!(to - from < most_cells * cell)) throw BakeError("flow: the body is too long for its cells");
+                if (!(to - from < most_cells * cell)) {
+                    throw BakeError(
+                        "flow: the body is more than a million cells long; lower resolution, or raise "
+                        "reference_length");
+                }
                 // Ghosts lie on nodes of the coarser block. Rows fill whole cache lines.
                 constexpr int lanes = static_cast<int>(Grid::lanes);
                 const int a = static_cast<int>(std::floor(from / (2 * cell)));

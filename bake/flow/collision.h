@@ -22,9 +22,7 @@ namespace frm::bake::flow {
 struct Stress {
     float xx, yy, zz, xy, xz, yz;
 
-    FRM_FLOW_INLINE float square() const {
-        return (xx * xx + yy * yy + zz * zz) + 2 * (xy * xy + xz * xz + yz * yz);
-    }
+    FRM_FLOW_INLINE float square() const { return (xx * xx + yy * yy + zz * zz) + 2 * (xy * xy + xz * xz + yz * yz); }
     FRM_FLOW_INLINE Stress times(float s) const { return {s * xx, s * yy, s * zz, s * xy, s * xz, s * yz}; }
 };
 
@@ -59,17 +57,15 @@ FRM_FLOW_INLINE Moments moments_of(const Load& load) {
     n_xx -= mean;
     n_yy -= mean;
     n_zz -= mean;
-    return {excess, ux, uy, uz,
-            {n_xx, n_yy, n_zz, (s7 - s9) - mx * uy, (s11 - s13) - mx * uz, (s15 - s17) - my * uz}};
+    return {excess, ux, uy, uz, {n_xx, n_yy, n_zz, (s7 - s9) - mx * uy, (s11 - s13) - mx * uz, (s15 - s17) - my * uz}};
 }
 
 /// Twice the relaxation time: the fluid's, or the sub-grid model's where that is the greater. nu_t = C^2 |S| with S
 /// from the stress of this very cell is a quadratic equation. The model's viscosity takes the place of the molecular
 /// one instead of adding to it: a boundary layer that the lattice resolves stays laminar (added, it made a sphere's
 /// drag at Re 100 4 % higher). `model` is 18 C^2.
-FRM_FLOW_INLINE float doubled_relaxation(const Moments& m, float molecular, float model) {
-    const float modelled =
-        0.5f + std::sqrt(0.25f + model * std::sqrt(2 * m.stress.square()) / (1 + m.excess));
+FRM_FLOW_INLINE float doubled_relaxation(float excess, float stress_square, float molecular, float model) {
+    const float modelled = 0.5f + std::sqrt(0.25f + model * std::sqrt(2 * stress_square) / (1 + excess));
     const float doubled = 2 * molecular;
     return modelled > doubled ? modelled : doubled;
 }

@@ -22,7 +22,7 @@ constexpr double most_viscosity = 0.05, least_speed = 1e-3;
 constexpr double sample_rate = 32;  // samples while the stream travels one reference length
 constexpr std::uint64_t most_steps = 50'000'000;
 constexpr double sponge_share = 0.12;      // of the coarsest block's length
-constexpr double settling = 4;  // lengths until the fine grid has forgotten what it started from
+constexpr double settling = 4;             // lengths until the fine grid has forgotten what it started from
 constexpr double most_normal_flow = 0.05;  // share of a spinning wall's speed
 
 std::string number(double v) {
@@ -184,9 +184,7 @@ double middle_offset(double extent_cells) {
 }
 
 /// From the lattice's origin to finest cells from the finest block's first node.
-Vec3d in_cells(const Vec3d& stream, const Domain& d) {
-    return (stream - d.origin) / d.plan.cell - d.node(0, 0, 0, 0);
-}
+Vec3d in_cells(const Vec3d& stream, const Domain& d) { return (stream - d.origin) / d.plan.cell - d.node(0, 0, 0, 0); }
 
 Walls walls_of(const Surface& surface, const Domain& d) {
     Walls walls;
@@ -258,8 +256,10 @@ void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
     }
     const double share = std::sqrt(normal_flow / area) / (rate * d.radius);
     if (share > most_normal_flow) {
-        throw BakeError("flow: the body is not one of revolution about the axis of spin (its wall would move through "
-                        "the water at " + number(100 * share) + " % of its speed); only such bodies can spin");
+        throw BakeError(
+            "flow: the body is not one of revolution about the axis of spin (its wall would move through "
+            "the water at " +
+            number(100 * share) + " % of its speed); only such bodies can spin");
     }
 }
 
@@ -359,8 +359,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
         bytes += 2 * Populations::bytes(grid);
     }
     const FlowBlock& box = plan.blocks.back();
-    const double cross_section =
-        (box.high.y - box.low.y) * (c.section ? c.section_span : box.high.z - box.low.z);
+    const double cross_section = (box.high.y - box.low.y) * (c.section ? c.section_span : box.high.z - box.low.z);
     plan.blockage = plan.projected_area / cross_section;
     d.sponge = sponge_share * d.blocks.back().grid.nx;
     const double unit = c.density * std::pow(plan.cell, 4) / (plan.time_step * plan.time_step);
@@ -383,14 +382,15 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     if (starts_coarse(c)) {
         const std::uint64_t at_once = std::uint64_t{1} << (d.blocks.size() - 1);
         d.first_step = (d.ramp_steps + at_once - 1) / at_once * at_once;
-        d.start_steps = d.first_step + static_cast<std::uint64_t>(std::ceil(std::min(settling, c.start_up) * per_length));
+        d.start_steps =
+            d.first_step + static_cast<std::uint64_t>(std::ceil(std::min(settling, c.start_up) * per_length));
     }
     plan.steps = d.start_steps - d.first_step + std::uint64_t{d.interval_steps} * d.samples + 1;
     plan.updates = static_cast<double>(finest_steps_of_cells) * static_cast<double>(plan.steps);
     // Two copies of the populations, a flag a finest cell, and some two hundred bytes for each cell of the body's
     // surface.
-    const double wetted = c.section ? 4 * (size.x + size.y) / plan.cell * d.finest().nz
-                                    : measure(surface).area / (plan.cell * plan.cell);
+    const double wetted =
+        c.section ? 4 * (size.x + size.y) / plan.cell * d.finest().nz : measure(surface).area / (plan.cell * plan.cell);
     plan.bytes = bytes + d.finest().allocated() + static_cast<std::uint64_t>(wetted * 5 * 200);
     if (plan.bytes > c.memory_limit) refuse_memory(static_cast<double>(plan.bytes), c.memory_limit);
     d.walls = c.section ? walls_of(segments, d) : walls_of(surface, d);

@@ -26,10 +26,11 @@ struct FlowCase {
     double duration = 20;  ///< recorded at most, in reference lengths travelled by the stream
     double turn = 0;       ///< degrees by which the lattice is turned about the stream from where it would be put
 
-    double confidence = 0;    ///< stop once the standard error of the mean drag is below this share; 0: run `duration`
-    double seconds = 0;       ///< stop after this wall time, with what there is; 0: no limit
-    bool grid_error = false;  ///< solve on half the resolution too, which tells the error of the grid; starts from there
-    bool pictures = false;    ///< fill FlowSeries::slices
+    double confidence = 0;  ///< stop once the standard error of the mean drag is below this share; 0: run `duration`
+    double seconds = 0;     ///< stop after this wall time, with what there is; 0: no limit
+    bool grid_error =
+        false;              ///< solve on half the resolution too, which tells the error of the grid; starts from there
+    bool pictures = false;  ///< fill FlowSeries::slices
 
     bool section = false;  ///< solve the cut of the body by the plane through `section_origin`
     Vec3d section_normal{0, 0,
@@ -83,8 +84,8 @@ struct FlowUncertainty {
 /// Means on a plane of the stream's frame through the body's middle; NaN inside the body. Values are of the last third
 /// of the run.
 struct FlowSlice {
-    int normal = 2;  ///< axis of the stream's frame across the slice, 1 or 2; rows go along the other one
-    Vec3d low;       ///< centre of the first value, in the stream's frame about the mesh's origin, m
+    int normal = 2;      ///< axis of the stream's frame across the slice, 1 or 2; rows go along the other one
+    Vec3d low;           ///< centre of the first value, in the stream's frame about the mesh's origin, m
     double spacing = 0;  ///< m
     std::uint32_t columns = 0, rows = 0;
     std::vector<float> speed;     ///< [rows][columns], share of the stream's
@@ -122,10 +123,10 @@ FlowPlan plan_flow(const Surface& surface, const FlowCase& flow_case);
 /// How a run stands; called a few times a second. False ends it: with the samples recorded so far, if there are any,
 /// else with FlowCancelled.
 struct FlowState {
-    double share = 0;       ///< of the longest run there may be, 0 to 1
-    double seconds_left = 0;  ///< to the end that is expected first; negative: not known yet
-    bool recording = false;   ///< false while the flow starts
-    bool coarse = false;      ///< the run on half the resolution
+    double share = 0;             ///< of the longest run there may be, 0 to 1
+    double seconds_left = 0;      ///< to the end that is expected first; negative: not known yet
+    bool recording = false;       ///< false while the flow starts
+    bool coarse = false;          ///< the run on half the resolution
     double drag_coefficient = 0;  ///< running mean (while starting: of the last moments); spin alone: of the torque,
                                   ///< T / (density/2 w^2 a^5)
     double statistics = 0;        ///< standard error as a share; 0 while not known

@@ -1,6 +1,7 @@
 // The wall: what comes back along the cut links, and the force of the water that follows from it, by region.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,11 +26,11 @@ struct Load {
 
 class Wall {
 public:
-    Wall(std::vector<Link> links, std::uint32_t regions);
+    /// `apart`: floats from one direction's populations to the next, as Populations::apart().
+    Wall(const std::vector<Link>& links, std::uint32_t regions, std::ptrdiff_t apart);
 
     /// Work is shared out by stretches of links of one region, of a length that does not depend on the threads. Sums
-    /// over a stretch go in the order of its links and the stretches are added in their order, so the bits are the
-    /// same.
+    /// over a stretch go in one order and the stretches are added in theirs, so the bits are the same.
     std::size_t stretches() const { return stretches_.size(); }
 
     /// Reads the populations and keeps what each link of a stretch sends back, and its load. `motion`: the share of its
@@ -53,9 +54,20 @@ private:
         std::uint32_t region = 0;
         Load load;
     };
+    /// What a link reads and writes, in floats from the populations at rest.
+    struct Places {
+        std::ptrdiff_t out, in, far, into;
+    };
+    struct Weights {
+        float out, in, far, wall;
+    };
+    /// What a unit of exchanged momentum adds to the load: force, pressure, torque.
+    static constexpr std::size_t parts = 9;
 
-    std::vector<Link> links_;
-    std::vector<float> back_;
+    std::vector<Places> places_;
+    std::vector<Weights> weights_;
+    std::array<std::vector<float>, parts> share_;  // [part][link]
+    std::vector<float> back_, exchange_;
     std::vector<Stretch> stretches_;
     std::vector<double> area_;  // of the regions, in cells squared
 };

@@ -13,15 +13,11 @@ struct Collision {
     const float* relaxation = nullptr;  ///< relaxation time of the molecular viscosity for each cell of a row
     float smagorinsky = 0;              ///< the model's constant, squared
     float push[3] = {};                 ///< velocity gained by the fluid in this step (the start-up's acceleration)
-    bool past_caches = false;           ///< the block is larger than the caches; same result, other stores
 };
 
 /// Cells [first, last) of row r of `to` from the neighbours in `from`; ghosts among them are left with no meaning.
 void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, std::size_t first,
                  std::size_t last, const Collision& collision);
-
-/// By each thread after its rows, where they went past the caches and before another thread reads them.
-void finish_stores();
 
 /// What blocks exchange of a cell: density less one, velocity, and stress over relaxation time (xx, yy, zz, xy, xz,
 /// yz), which is the rate of strain but for constants: smooth across a change of cell size, where populations are not.

@@ -99,6 +99,9 @@ public:
     float* at(int direction) { return memory_.get() + offset(direction); }
     const float* at(int direction) const { return memory_.get() + offset(direction); }
 
+    /// Floats from one direction's populations to the next.
+    static std::ptrdiff_t apart(const Grid& grid) { return static_cast<std::ptrdiff_t>(stride(grid)); }
+
     static std::size_t bytes(const Grid& grid) {
         return (direction_count * stride(grid) + 2 * Grid::lanes) * sizeof(float);
     }

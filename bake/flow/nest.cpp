@@ -14,7 +14,6 @@ namespace {
 constexpr float smagorinsky = 0.1f * 0.1f;
 constexpr double sway_y = 0.05, sway_z = 0.03;  // of the stream's speed
 constexpr float soundest = 0.3f;
-constexpr std::size_t cache_bytes = std::size_t{32} << 20;  // blocks beyond it are written past the caches
 
 }  // namespace
 
@@ -29,13 +28,12 @@ Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int th
         const bool outermost = l + 1 == domain.levels();
         level.relaxation = relaxation_times(grid, domain.relaxation(l), outermost ? domain.sponge : 0);
         level.collision.smagorinsky = smagorinsky;
-        level.collision.past_caches = 2 * Populations::bytes(grid) > cache_bytes;
+        level.shares = std::make_unique<Shares>(grid.rows(), threads);
         levels_.push_back(std::move(level));
         if (l > 0) {
-            refinements_.emplace_back(domain.blocks[static_cast<std::size_t>(l) - 1],
-                                      domain.blocks[static_cast<std::size_t>(l)],
-                                      static_cast<float>(domain.relaxation(l - 1)),
-                                      static_cast<float>(domain.relaxation(l)), smagorinsky);
+            refinements_.emplace_back(
+                domain.blocks[static_cast<std::size_t>(l) - 1], domain.blocks[static_cast<std::size_t>(l)],
+                static_cast<float>(domain.relaxation(l - 1)), static_cast<float>(domain.relaxation(l)), smagorinsky);
         }
     }
     for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -102,7 +100,7 @@ void Nest::advance_level(std::size_t l) {
 
     const auto fills = static_cast<std::ptrdiff_t>(outermost ? 0 : refinements_[l].fill_tasks());
     const auto reads = static_cast<std::ptrdiff_t>(l == 0 ? 0 : refinements_[l - 1].observe_tasks());
-#pragma omp for schedule(dynamic, 8)
+#pragma omp for schedule(static)
     for (std::ptrdiff_t n = 0; n < fills + reads; ++n) {
         if (n < fills) {
             refinements_[l].fill(*level.to, level.second ? 1.0f : 0.5f, level.collision.push,
@@ -113,6 +111,7 @@ void Nest::advance_level(std::size_t l) {
     }
 #pragma omp single
     {
+        level.shares->reset();
         level.step += std::uint64_t{1} << l;
         level.second = !level.second;
         if (outermost && level.step <= domain_.ramp_steps + 2 * steps_at_once()) {
@@ -129,9 +128,9 @@ void Nest::advance_level(std::size_t l) {
     Refinement& border = refinements_[l - 1];
     const auto filters = static_cast<std::ptrdiff_t>(border.filter_tasks());
     const auto writes = static_cast<std::ptrdiff_t>(border.restrict_tasks());
-#pragma omp for schedule(dynamic, 8)
+#pragma omp for schedule(static)
     for (std::ptrdiff_t n = 0; n < filters; ++n) border.filter(*levels_[l - 1].to, static_cast<std::size_t>(n));
-#pragma omp for schedule(dynamic, 8)
+#pragma omp for schedule(static)
     for (std::ptrdiff_t n = 0; n < writes; ++n) {
         border.restrict_to(*level.from, level.collision.push, static_cast<std::size_t>(n));
     }
@@ -143,9 +142,9 @@ void Nest::walls() {
     const auto stretches = static_cast<std::ptrdiff_t>(wall_.stretches());
     Populations& from = *levels_.front().from;
     const auto motion = static_cast<float>(ramp(static_cast<double>(levels_.front().step)));
-#pragma omp for schedule(dynamic, 8)
+#pragma omp for schedule(static)
     for (std::ptrdiff_t s = 0; s < stretches; ++s) wall_.gather(from, motion, static_cast<std::size_t>(s));
-#pragma omp for schedule(dynamic, 8)
+#pragma omp for schedule(static)
     for (std::ptrdiff_t s = 0; s < stretches; ++s) wall_.scatter(from, static_cast<std::size_t>(s));
 }
 
@@ -154,15 +153,11 @@ void Nest::bulk(std::size_t l) {
     const Grid& grid = level.grid;
     const bool outermost = l + 1 == levels_.size();
     const auto far = stream_populations(stream(level.step + (std::uint64_t{1} << l)));
-    const auto rows = static_cast<std::ptrdiff_t>(grid.rows());
-#pragma omp for schedule(dynamic, 16) nowait
-    for (std::ptrdiff_t n = 0; n < rows; ++n) {
-        const auto r = static_cast<std::size_t>(n);
+    level.shares->each([&](std::size_t r) {
         collide_row(grid, *level.from, *level.to, r, 0, grid.pitch(), level.collision);
         if (l == 0) empty_solid(r);
         if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
-    }
-    finish_stores();
+    });
 #pragma omp barrier
 }
 
@@ -288,7 +283,8 @@ void Nest::set(const Source& source) {
         }
     }
     for (std::size_t l = 0; l < refinements_.size(); ++l) {
-        for (std::size_t n = 0; n < refinements_[l].observe_tasks(); ++n) refinements_[l].observe(*levels_[l + 1].to, n);
+        for (std::size_t n = 0; n < refinements_[l].observe_tasks(); ++n)
+            refinements_[l].observe(*levels_[l + 1].to, n);
     }
 }
 

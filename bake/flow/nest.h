@@ -13,6 +13,7 @@
 #include "bake/flow/lattice.h"
 #include "bake/flow/links.h"
 #include "bake/flow/refinement.h"
+#include "bake/flow/threads.h"
 
 namespace frm::bake::flow {
 
@@ -47,6 +48,7 @@ private:
         std::unique_ptr<Populations> from, to;
         std::vector<float> relaxation;  // for each cell of a row
         Collision collision;
+        std::unique_ptr<Shares> shares;
         std::uint64_t step = 0;  // in finest steps
         bool second = false;     // of two in the coarser block's step
     };
@@ -63,11 +65,11 @@ private:
 
     const Domain& domain_;
     Wall& wall_;
-    std::vector<Level> levels_;              // finest first
-    std::vector<Refinement> refinements_;    // [l] between levels l and l + 1
+    std::vector<Level> levels_;            // finest first
+    std::vector<Refinement> refinements_;  // [l] between levels l and l + 1
     std::vector<SolidRun> solid_;
-    std::vector<std::size_t> solid_begin_;   // of each row
-    std::vector<char> is_solid_;             // of each cell of the finest block
+    std::vector<std::size_t> solid_begin_;  // of each row
+    std::vector<char> is_solid_;            // of each cell of the finest block
     const std::function<void(std::uint64_t)>* after_step_ = nullptr;
     int threads_;
 };

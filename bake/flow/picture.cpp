@@ -15,7 +15,8 @@ constexpr int least_block_cells = 16;  // a size; the picture shows the block of
 Picture::Picture(const Domain& domain) : domain_(domain) {
     // The block that holds the near wake and some way around.
     std::size_t shown = 0;
-    while (shown + 1 < domain.blocks.size() && domain.bulk / static_cast<double>(2u << shown) >= least_block_cells) ++shown;
+    while (shown + 1 < domain.blocks.size() && domain.bulk / static_cast<double>(2u << shown) >= least_block_cells)
+        ++shown;
     const FlowBlock& block = domain.plan.blocks[std::min(shown + 1, domain.blocks.size() - 1)];
     const bool section = domain.finest().periodic;
     for (const int normal : {2, 1}) {

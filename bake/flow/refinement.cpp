@@ -33,6 +33,16 @@ std::array<int, 3> Refinement::Face::at(int plane, int u_index, int v_index) con
     return p;
 }
 
+Refinement::Range Refinement::Face::mine(int entering, std::size_t count, bool first_row, bool last_row) const {
+    const Direction& c = directions[static_cast<std::size_t>(entering)];
+    // It enters through the other axis' face as well: at the low end upwards, at the high end downwards.
+    const auto shared = [&](int other, bool at_low, bool at_high) {
+        return other < axis && ((at_low && c.along(other) > 0) || (at_high && c.along(other) < 0));
+    };
+    if (!wraps && shared(v, first_row, last_row)) return {0, 0};
+    return {shared(u, true, false) ? std::size_t{1} : 0, count - (shared(u, false, true) ? 1 : 0)};
+}
+
 Refinement::Refinement(const Block& fine, const Block& coarse, float fine_relaxation, float coarse_relaxation,
                        float smagorinsky)
     : fine_(fine.grid),
@@ -86,8 +96,8 @@ void Refinement::add_face(const Block& fine, const Block& coarse, int axis, bool
     for (int i = 1; i < direction_count; ++i) {
         if (directions[static_cast<std::size_t>(i)].along(axis) == (high ? -1 : 1)) face.inward[entering++] = i;
     }
-    const auto size = static_cast<std::size_t>(field_count) * static_cast<std::size_t>(face.nu) *
-                      static_cast<std::size_t>(face.nv);
+    const auto size =
+        static_cast<std::size_t>(field_count) * static_cast<std::size_t>(face.nu) * static_cast<std::size_t>(face.nv);
     for (std::vector<float>& fields : face.fields) fields.assign(size, 0);
     face.between.assign(static_cast<std::size_t>(field_count) * static_cast<std::size_t>(face.between_rows()) *
                             static_cast<std::size_t>(face.between_count()),
@@ -137,7 +147,8 @@ void Refinement::fill(Populations& fine, float share, const float* push, std::si
             const float *c0 = face.row(1 - newest_, f, rows[2]), *c1 = face.row(newest_, f, rows[2]);
             const float *d0 = face.row(1 - newest_, f, rows[3]), *d1 = face.row(newest_, f, rows[3]);
             for (std::size_t u = 0; u < nu; ++u) {
-                line[u] = old_share * half_way(a0[u], b0[u], c0[u], d0[u]) + share * half_way(a1[u], b1[u], c1[u], d1[u]);
+                line[u] =
+                    old_share * half_way(a0[u], b0[u], c0[u], d0[u]) + share * half_way(a1[u], b1[u], c1[u], d1[u]);
             }
         } else {
             for (std::size_t u = 0; u < nu; ++u) line[u] = blended(rows[1], u);
@@ -159,9 +170,10 @@ void Refinement::fill(Populations& fine, float share, const float* push, std::si
     const auto first = static_cast<std::ptrdiff_t>(fine_.index(p[0], p[1], p[2]));
     const std::ptrdiff_t step = face.axis == 0 ? fine_.stride_y() : 1;
     for (const int i : face.inward) {
+        const Range mine = face.mine(i, fine_nu, v == 0, v == face.fine_nv - 1);
         float* const to = fine.at(i) + first;
         const float* const f = out[static_cast<std::size_t>(i)];
-        for (std::size_t u = 0; u < fine_nu; ++u) to[static_cast<std::ptrdiff_t>(u) * step] = f[u];
+        for (std::size_t u = mine.begin; u < mine.end; ++u) to[static_cast<std::ptrdiff_t>(u) * step] = f[u];
     }
 }
 
@@ -172,6 +184,16 @@ void Refinement::filter(const Populations& fine, std::size_t task) {
     float* const line = scratch(field_count * (4 * read + Grid::lanes));
     float* const cells = line + field_count * read;  // what one pass reads
     Fields fields{};
+    if (face.axis == 0 && !face.high) {
+        // What comes in ahead is smooth: the nodes alone, read where the coarse block has them.
+        if (v % 2 == 0 && !face.wraps) return;
+        for (std::size_t u = 1; u < read; u += 2) {
+            for (std::size_t f = 0; f < field_count; ++f) fields[f] = face.between_row(static_cast<int>(f), v) + u / 2;
+            const auto p = face.at(face.fine_ring, static_cast<int>(u), v);
+            flow::observe(fine_, fine, p[0], p[1], p[2], 1, fine_relaxation_, smagorinsky_, fields);
+        }
+        return;
+    }
     if (face.axis == 0) {
         // A whole vector of cells along x costs no more than the three that are wanted.
         for (std::size_t f = 0; f < field_count; ++f) fields[f] = cells + f * Grid::lanes;
@@ -217,7 +239,7 @@ void Refinement::restrict_to(Populations& coarse, const float* push, std::size_t
     for (int f = 0; f < field_count; ++f) {
         float* const to = kept + static_cast<std::size_t>(f) * count;
         const float* const b = face.between_row(f, fine_v);
-        if (face.v_scale == 1 || f < first_filtered) {
+        if (face.v_scale == 1 || f < first_filtered || (face.axis == 0 && !face.high)) {
             std::copy(b, b + count, to);
         } else {
             const float* const a = face.between_row(f, face.wraps ? fine_.wrap(fine_v - 1) : fine_v - 1);
@@ -233,10 +255,10 @@ void Refinement::restrict_to(Populations& coarse, const float* push, std::size_t
     const auto first = static_cast<std::ptrdiff_t>(coarse_.index(p[0], p[1], p[2]));
     const std::ptrdiff_t step = face.axis == 0 ? coarse_.stride_y() : 1;
     for (const int i : face.inward) {
-        const int leaving = opposite(i);
-        float* const to = coarse.at(leaving) + first;
-        const float* const f = out[static_cast<std::size_t>(leaving)];
-        for (std::size_t u = 0; u < count; ++u) to[static_cast<std::ptrdiff_t>(u) * step] = f[u];
+        const Range mine = face.mine(i, count, v == 2, v == face.nv - 3);
+        float* const to = coarse.at(opposite(i)) + first;
+        const float* const f = out[static_cast<std::size_t>(opposite(i))];
+        for (std::size_t u = mine.begin; u < mine.end; ++u) to[static_cast<std::ptrdiff_t>(u) * step] = f[u];
     }
 }
 

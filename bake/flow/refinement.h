@@ -42,20 +42,23 @@ public:
     void restrict_to(Populations& coarse, const float* push, std::size_t task) const;
 
 private:
+    struct Range {
+        std::size_t begin, end;
+    };
     /// One of the six planes (four for a section) and how its nodes are counted: u along rows, v across them.
     struct Face {
         int axis = 0, u = 1, v = 2;
         bool high = false;
-        bool wraps = false;             // v is the periodic axis
-        int coarse = 0, fine = 0;       // the plane, as index of either block
-        int ring = 0, fine_ring = 0;    // the coarse nodes written by restriction
-        int u_first = 0, v_first = 0;   // first coarse node kept of the plane
-        int nu = 0, nv = 0;             // coarse nodes kept, a node more on each side than the fine block needs
-        int fine_nu = 0, fine_nv = 0;   // fine nodes of the plane, its borders included
-        int v_scale = 2;                // fine nodes a coarse one along v (1: two dimensions)
-        std::array<int, 5> inward{};    // directions that enter the fine block
+        bool wraps = false;            // v is the periodic axis
+        int coarse = 0, fine = 0;      // the plane, as index of either block
+        int ring = 0, fine_ring = 0;   // the coarse nodes written by restriction
+        int u_first = 0, v_first = 0;  // first coarse node kept of the plane
+        int nu = 0, nv = 0;            // coarse nodes kept, a node more on each side than the fine block needs
+        int fine_nu = 0, fine_nv = 0;  // fine nodes of the plane, its borders included
+        int v_scale = 2;               // fine nodes a coarse one along v (1: two dimensions)
+        std::array<int, 5> inward{};   // directions that enter the fine block
         std::array<std::vector<float>, 2> fields;
-        std::vector<float> between;     // what filter hands to restrict_to: coarse nodes along u, fine ones along v
+        std::vector<float> between;  // what filter hands to restrict_to: coarse nodes along u, fine ones along v
 
         int between_rows() const { return wraps ? fine_nv : fine_nv - 2; }
         int between_count() const { return (fine_nu - 3) / 2; }
@@ -65,10 +68,12 @@ private:
         const float* between_row(int field, int n) const { return const_cast<Face*>(this)->between_row(field, n); }
 
         float* row(int time, int field, int n) {
-            return fields[static_cast<std::size_t>(time)].data() +
-                   (static_cast<std::ptrdiff_t>(field) * nv + n) * nu;
+            return fields[static_cast<std::size_t>(time)].data() + (static_cast<std::ptrdiff_t>(field) * nv + n) * nu;
         }
         const float* row(int time, int field, int n) const { return const_cast<Face*>(this)->row(time, field, n); }
+        /// Where two faces meet, both know the nodes, but not to the last bit: those that the face of the lower axis writes
+        /// are left to it. Nodes of a row of `count` to write for a direction.
+        Range mine(int entering, std::size_t count, bool first_row, bool last_row) const;
         std::array<int, 3> at(int plane, int along_u, int along_v) const;
     };
     struct Task {

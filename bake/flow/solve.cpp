@@ -31,7 +31,7 @@ constexpr double least_statistics = 1e-3;
 constexpr double grid_share = 0.5;  // of the difference to the run on half the resolution
 constexpr std::uint64_t guard_steps = 64;
 constexpr double progress_seconds = 0.3;
-constexpr double picture_every = 0.5;  // lengths
+constexpr double picture_every = 0.5;                  // lengths
 constexpr double least_record = 5, check_every = 0.5;  // lengths: of a confidence that counts, and between looks at it
 
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
@@ -45,7 +45,7 @@ public:
           case_(c),
           progress_(progress),
           body_(cut_links(domain, regions)),
-          wall_(std::move(body_.links), regions.count),
+          wall_(body_.links, regions.count, Populations::apart(domain.finest())),
           nest_(domain, std::move(body_.solid), wall_, thread_count(c.threads)),
           loads_(regions.count),
           before_(regions.count),
@@ -195,8 +195,9 @@ private:
         }
         if (case_.seconds > 0 && seconds_since(started_) > case_.seconds) {
             if (measure_.empty()) {
-                throw BakeError("flow: the time given (seconds) ended while the flow was still starting; give more, or "
-                                "lower resolution or start_up");
+                throw BakeError(
+                    "flow: the time given (seconds) ended while the flow was still starting; give more, or "
+                    "lower resolution or start_up");
             }
             return end(FlowEnding::seconds);
         }

@@ -19,7 +19,7 @@ namespace {
 using namespace flow;
 using Clock = std::chrono::steady_clock;
 
-constexpr int side = 190;         // of the interior's block: 1 GB of populations, out of reach of any cache
+constexpr int side = 190;          // of the interior's block: 1 GB of populations, out of reach of any cache
 constexpr double resolution = 48;  // of the nested run
 
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
@@ -56,14 +56,11 @@ double interior_rate(double seconds, int threads) {
     Collision collision;
     collision.relaxation = times.data();
     collision.smagorinsky = 0.01f;
-    collision.past_caches = true;
-    const auto rows = static_cast<std::ptrdiff_t>(grid.rows());
+    Shares shares(grid.rows(), threads);
     const double time = shortest(seconds, [&] {
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 16)
-        for (std::ptrdiff_t r = 0; r < rows; ++r) {
-            collide_row(grid, from, to, static_cast<std::size_t>(r), 0, grid.pitch(), collision);
-        }
-        finish_stores();
+        shares.reset();
+#pragma omp parallel num_threads(threads)
+        shares.each([&](std::size_t r) { collide_row(grid, from, to, r, 0, grid.pitch(), collision); });
         std::swap(from, to);
     });
     return static_cast<double>(grid.cells()) / time * 1e-6;
@@ -101,7 +98,7 @@ double nested_rate(double seconds, int threads) {
     const Domain domain = plan_domain(surface, c);
     Regions one{std::vector<std::uint32_t>(surface.triangles.size(), 0), 1};
     Body body = cut_links(domain, one);
-    Wall wall(std::move(body.links), 1);
+    Wall wall(body.links, 1, Populations::apart(domain.finest()));
     Nest nest(domain, std::move(body.solid), wall, threads);
     std::vector<Load> loads(1);
     const double time = shortest(seconds, [&] { nest.advance([&](std::uint64_t) { wall.sum(loads); }); });

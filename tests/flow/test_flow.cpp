@@ -182,8 +182,18 @@ TEST_CASE("the plan says what a run takes", "[flow]") {
     CHECK(plan.reynolds == Approx(c.speed * plan.reference_length / c.viscosity));
     CHECK(plan.reynolds_solved < plan.reynolds);
     CHECK(mentions(plan.warning, "Reynolds"));
-    CHECK(plan.blockage > 0.01);
-    CHECK(plan.blockage < 0.05);
+    CHECK(plan.blockage > 0.001);
+    CHECK(plan.blockage < 0.01);
+    CHECK(plan.blocks.size() >= 4);
+    CHECK(plan.blocks.front().cell == plan.cell);
+    for (std::size_t l = 1; l < plan.blocks.size(); ++l) {
+        const FlowBlock &fine = plan.blocks[l - 1], &coarse = plan.blocks[l];
+        CHECK(coarse.cell == Approx(2 * fine.cell));
+        for (int axis = 0; axis < 3; ++axis) {
+            CHECK(coarse.low[axis] < fine.low[axis] - coarse.cell);
+            CHECK(coarse.high[axis] > fine.high[axis] + coarse.cell);
+        }
+    }
     CHECK(plan.bytes > plan.cells * 19 * 4 * 2);
     CHECK(static_cast<double>(plan.steps) * plan.time_step ==
           Approx((c.start_up + c.duration) * plan.reference_length / c.speed).epsilon(0.02));
@@ -215,7 +225,14 @@ TEST_CASE("what is wrong with a case is named", "[flow]") {
                        c.reference_length = 1e-5;
                        c.viscosity = 1e-7;
                    }),
-                   "memory_limit"));
+                   "reference_length"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.resolution = 500; }), "memory_limit"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.confidence = 2; }), "confidence"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.seconds = -1; }), "seconds"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.turn = nan; }), "turn"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.slab = 2; }), "slab"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.spin = {0, 0, infinity}; }), "spin"));
+    CHECK(mentions(error_with([&](FlowCase& c) { c.spin = {0, 0, 1}; }), "revolution"));
     CHECK(mentions(error_with([&](FlowCase& c) {
                        c.section = true;
                        c.section_normal = {1, 0, 0};

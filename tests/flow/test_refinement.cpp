@@ -56,7 +56,7 @@ TEST_CASE("a vortex goes through blocks of other cells as if they were not there
     Domain d = empty_nest(true, 24);
     REQUIRE(d.levels() >= 4);
     d.viscosity = 0.002;
-    Wall wall({}, 1);
+    Wall wall({}, 1, 0);
     Nest nest(d, {}, wall, 2);
     const Vec3d middle = Vec3d{0, 0, 0};
     // From ahead of the second block, through the finest, to behind both.
@@ -70,8 +70,10 @@ TEST_CASE("a vortex goes through blocks of other cells as if they were not there
         f[0] = static_cast<float>(3 * vortex.pressure(p, 0, 0.1));
         f[1] = static_cast<float>(0.1 + u.x);
         f[2] = static_cast<float>(u.y);
-        const Vec3d ux = (vortex.at(p + Vec3d{step, 0, 0}, 0, 0.1) - vortex.at(p - Vec3d{step, 0, 0}, 0, 0.1)) / (2 * step);
-        const Vec3d uy = (vortex.at(p + Vec3d{0, step, 0}, 0, 0.1) - vortex.at(p - Vec3d{0, step, 0}, 0, 0.1)) / (2 * step);
+        const Vec3d ux =
+            (vortex.at(p + Vec3d{step, 0, 0}, 0, 0.1) - vortex.at(p - Vec3d{step, 0, 0}, 0, 0.1)) / (2 * step);
+        const Vec3d uy =
+            (vortex.at(p + Vec3d{0, step, 0}, 0, 0.1) - vortex.at(p - Vec3d{0, step, 0}, 0, 0.1)) / (2 * step);
         // Stress over relaxation time is -2/3 of the rate of strain.
         f[4] = static_cast<float>(-2.0 / 3 * ux.x);
         f[5] = static_cast<float>(-2.0 / 3 * uy.y);
@@ -80,24 +82,25 @@ TEST_CASE("a vortex goes through blocks of other cells as if they were not there
     const std::uint64_t begin = nest.step();
     const double distance = -2 * vortex.x;
     double worst = 0;
+    int looks = 0;
     while (static_cast<double>(nest.step() - begin) * 0.1 < distance) {
         nest.advance([](std::uint64_t) {});
         const auto t = static_cast<double>(nest.step() - begin);
         if (nest.step() % 256 != 0) continue;
-        double error = 0, density = 0;
+        double error = 0;
         for (int i = -40; i <= 40; i += 4) {
             for (int j = -40; j <= 40; j += 4) {
                 const Vec3d p{4 * std::round((vortex.x + 0.1 * t + i) / 4), 4 * std::round((vortex.y + j) / 4), 0};
                 std::array<float, field_count> f{};
                 REQUIRE(nest.sample(p, f));
                 const Vec3d u = vortex.at(p, t, 0.1);
-                error = std::max({error, std::abs(static_cast<double>(f[1]) - 0.1 - u.x), std::abs(static_cast<double>(f[2]) - u.y)});
-                density = std::max(density, std::abs(static_cast<double>(f[0]) / 3 - vortex.pressure(p, t, 0.1)));
+                error = std::max({error, std::abs(static_cast<double>(f[1]) - 0.1 - u.x),
+                                  std::abs(static_cast<double>(f[2]) - u.y)});
             }
         }
-        std::printf("x %.1f error %.4f of the speed %.4f, pressure %.4f of its depth\n", vortex.x + 0.1 * t, error / vortex.peak(t), vortex.peak(t), density / (0.5 * vortex.peak(t) * vortex.peak(t) * std::exp(1.0)));
+        ++looks;
         worst = std::max(worst, error / vortex.peak(t));
     }
-    for (const Block& b : d.blocks) std::printf("block %d..%d\n", b.first[0], b.first[0] + b.grid.nx - 1);
+    CHECK(looks > 4);
     CHECK(worst < 0.05);
 }

@@ -55,7 +55,7 @@ double radius_felt(const Domain& d, double radius, double viscosity) {
     const Grid& grid = d.finest();
     Regions one{std::vector<std::uint32_t>(1, 0), 1};
     Body body = cut_links(d, one);
-    Wall wall(std::move(body.links), 1);
+    Wall wall(body.links, 1, Populations::apart(grid));
     Populations from(grid), to(grid);
     std::vector<char> water(grid.allocated(), 0);
     for (int j = 0; j < grid.ny; ++j) {
@@ -96,12 +96,14 @@ double radius_felt(const Domain& d, double radius, double viscosity) {
 
 }  // namespace
 
+// The viscosities a run may have: 0.05 at most (domain.cpp), because it is beyond that that the wall moves, by 0.12 cells
+// at 0.2 for the smaller pipe.
 TEST_CASE("the wall stays where it is whatever the viscosity", "[flow]") {
     for (const double radius : {5.3, 9.7}) {
         const Domain d = pipe(radius, 0.13, -0.29);
-        for (const double viscosity : {0.002, 0.01, 0.05, 0.1, 0.2}) {
-            const double felt = radius_felt(d, radius, viscosity);
-            std::printf("radius %g viscosity %g felt %.4f\n", radius, viscosity, felt - radius);
+        for (const double viscosity : {0.005, 0.02, 0.05}) {
+            INFO("radius " << radius << ", viscosity " << viscosity);
+            CHECK(std::abs(radius_felt(d, radius, viscosity) - radius) < 0.05);
         }
     }
 }
