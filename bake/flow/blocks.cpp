@@ -22,7 +22,7 @@ constexpr double most_in_wake = 36;  // cells a size
 constexpr Room far_away{8, 10, 14}, far_section{30, 30, 40};
 // Cells a size in the coarsest block.
 constexpr double coarsest = 1.0, coarsest_section = 0.75;
-constexpr int least_cells = 6, least_gap = 4;  // room of the finest block; from one block's border to the next
+constexpr int least_cells = 8, least_gap = 6;  // room of the finest block; from one block's border to the next
 constexpr double most_cells = 1e6;
 
 double between(double inner, double outer, double share) { return inner * std::pow(outer / inner, share); }

@@ -1,5 +1,5 @@
 // Where a block meets the next coarser one. The fine block's ghosts lie on planes of coarse nodes; the coarse block's
-// nodes one cell further in lie on fine nodes. What passes is density, velocity and rate of strain (kernel.h), from
+// nodes two cells further in lie on fine nodes (the one between is its own still). What passes is density, velocity and rate of strain (kernel.h), from
 // which populations of the other cell size are rebuilt: the rescaling of Dupuis & Chopard 2003, Phys. Rev. E 67,
 // done on moments; cubic interpolation in the planes as in Lagrava et al. 2012, J. Comput. Phys. 231; linear in time.
 #pragma once
@@ -61,7 +61,7 @@ private:
         std::vector<float> between;  // what filter hands to restrict_to: coarse nodes along u, fine ones along v
 
         int between_rows() const { return wraps ? fine_nv : fine_nv - 2; }
-        int between_count() const { return (fine_nu - 3) / 2; }
+        int between_count() const { return (fine_nu - 7) / 2; }
         float* between_row(int field, int n) {
             return between.data() + (static_cast<std::ptrdiff_t>(field) * between_rows() + n) * between_count();
         }
