@@ -48,6 +48,7 @@ struct Domain {
     double sponge = 0;          ///< coarsest cells of raised viscosity before the outlet
     double force_unit = 0;      ///< N of one lattice unit
     double drag_area = 0;       ///< projected area in the units of a lattice force: 2 F / (u^2 drag_area) is Cd
+    double layer_error = 0;     ///< share of the drag that boundary layers thinner than cells may cost
     double radius = 0;          ///< largest distance from the spin's axis, m
     Vec3d spin;                 ///< stream's frame, radians a finest step
     Vec3d spin_centre;          ///< finest cells from node (0, 0, 0) of the finest block

@@ -76,7 +76,8 @@ struct FlowPlan {
 /// like, as a share of it.
 struct FlowUncertainty {
     double statistics = 0;  ///< of a mean over a finite time
-    double grid = -1;       ///< of the finest cell, from the run on half the resolution; negative: not measured
+    double grid = -1;       ///< of the finest cell: half of the difference to the run on half the resolution, and what
+                            ///< boundary layers on round walls may cost that are thinner than cells; negative: not known
     double blockage = 0;    ///< of the far field
     double total() const;   ///< root of the squares of those that are known
 };

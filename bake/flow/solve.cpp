@@ -323,7 +323,9 @@ FlowSeries solve_twice(const Surface& surface, const Regions& regions, const Dom
     FlowSeries series = run.solve();
     series.coarse_drag = mean_quantity(first, c);
     const double fine = mean_quantity(series, c);
-    if (fine != 0) series.uncertainty.grid = grid_share * std::abs(1 - series.coarse_drag / fine);
+    if (fine != 0) {
+        series.uncertainty.grid = std::hypot(grid_share * (1 - series.coarse_drag / fine), domain.layer_error);
+    }
     series.seconds = seconds_since(started);
     return series;
 }

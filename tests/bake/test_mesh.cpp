@@ -11,6 +11,7 @@
 #include "bake/mesh/adjacency.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
+#include "bake/mesh/roundness.h"
 #include "bake/mesh/surface.h"
 #include "tests/support/catch.h"
 #include "tests/support/shapes.h"
@@ -585,4 +586,12 @@ TEST_CASE("the sample meshes need no repair", "[mesh][samples]") {
     CHECK(p.high.x - p.low.x == Approx(0.2).epsilon(0.01));
     CHECK(-p.low.z > p.high.z);                                                        // the blade is at -z
     CHECK(projected_area(paddle, {0, 1, 0}) > 2 * projected_area(paddle, {1, 0, 0}));  // and faces y
+}
+
+TEST_CASE("roundness tells a sphere from a box", "[mesh]") {
+    CHECK(roundness(test::icosphere(1, 3)) == Approx(1));
+    CHECK(roundness(test::box({1, 2, 3})) == Approx(0).margin(1e-9));
+    // Its side turns by 2 pi over a height of 1, its two rims by half pi over pi each.
+    constexpr double pi = 3.14159265358979323846;
+    CHECK(roundness(test::cylinder(0.5, 1, 64)) == Approx(2 * pi / (2 * pi + pi * pi)).epsilon(0.01));
 }

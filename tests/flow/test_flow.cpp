@@ -73,7 +73,6 @@ bool mentions(const std::string& text, const char* word) { return text.find(word
 
 }  // namespace
 
-// 14 cells over the diameter: 0.7 million cells, 2,000 steps, 5 s on two cores.
 TEST_CASE("a sphere at Reynolds number 100 has the drag of the literature", "[flow]") {
     const Surface sphere = test::icosphere(0.5, 4);
     const FlowSeries series = solve(sphere, unit_case(100, 14, 8, 4));
@@ -282,4 +281,108 @@ TEST_CASE("progress is told, and can stop a run", "[flow]") {
     CHECK(whole.ending == FlowEnding::duration);
     const auto stop = [](const FlowState&) { return false; };
     CHECK_THROWS_AS(solve_flow(body, one_region(body), c, stop), FlowCancelled);
+}
+
+TEST_CASE("a run on half the resolution tells the error of the grid", "[flow]") {
+    const Surface sphere = test::icosphere(0.5, 4);
+    FlowCase c = unit_case(100, 16, 8, 4);
+    c.grid_error = true;
+    const FlowSeries series = solve(sphere, c);
+    const double drag = mean(series.pressure).x + mean(series.friction).x;
+    CHECK(Coefficients(series).total.x == Approx(1.09).epsilon(0.05));
+    CHECK(series.coarse_drag > drag);
+    CHECK(series.uncertainty.grid > 0.01);
+    CHECK(series.uncertainty.grid < 0.1);
+    CHECK(series.uncertainty.total() >= series.uncertainty.grid);
+    // It starts from there, so that it is as far as a run of its own is after twice the time.
+    CHECK(series.uncertainty.statistics < 0.01);
+    c.resolution = 6;  // too few to halve
+    CHECK(solve(sphere, c).uncertainty.grid < 0);
+}
+
+TEST_CASE("a layer that is thinner than cells counts on a sphere and not on a cube", "[flow]") {
+    FlowCase c = unit_case(1e4, 12, 2, 2);
+    c.grid_error = true;
+    const auto grid = [&](const Surface& body) { return solve(body, c).uncertainty.grid; };
+    CHECK(grid(test::icosphere(0.5, 4)) > 0.15);
+    const FlowSeries cube = solve(test::box({1, 1, 1}), c);
+    const double fine = mean(cube.pressure).x + mean(cube.friction).x;
+    CHECK(cube.uncertainty.grid == Approx(0.5 * std::abs(1 - cube.coarse_drag / fine)).margin(1e-3));
+}
+
+// Dennis, Singh and Ingham 1980, J. Fluid Mech. 101: 2 T / (rho w^2 a^5) = 6.45 Re^-1/2 + 32.1 / Re.
+TEST_CASE("a sphere that spins in still water feels the torque of the literature", "[flow]") {
+    FlowCase c = unit_case(200, 14, 18, 2);
+    c.speed = 0;
+    c.spin = {0, 0, 2};  // the equator at 1 m/s
+    c.viscosity = 2 * 0.25 / 200;
+    const FlowSeries series = solve(test::icosphere(0.5, 4), c);
+    const double torque = -mean(series.torque).z * 2 / (4 * std::pow(0.5, 5));
+    CHECK(torque == Approx(6.45 / std::sqrt(200.0) + 32.1 / 200).epsilon(0.08));
+    CHECK(length(mean(series.pressure)) < 0.02 * torque);
+    CHECK(std::abs(mean(series.torque).x) < 0.02 * torque);
+}
+
+TEST_CASE("a slab of a section has the force of its span", "[flow]") {
+    FlowCase c = unit_case(60, 10, 6, 3);
+    c.section = true;
+    const Surface cylinder = test::cylinder(0.5, 2, 96);
+    const Coefficients flat(solve(cylinder, c));
+    c.slab = 1.5;
+    const FlowPlan plan = plan_flow(cylinder, c);
+    CHECK(plan.blocks.front().high.z - plan.blocks.front().low.z > 1);
+    // At this Reynolds number nothing happens along the span.
+    CHECK(Coefficients(solve(cylinder, c)).total.x == Approx(flat.total.x).epsilon(0.01));
+}
+
+TEST_CASE("a run ends when it knows enough, or when its time is up", "[flow]") {
+    const Surface body = test::box({1, 1, 1});
+    FlowCase c = unit_case(100, 8, 6, 200);
+    c.confidence = 0.02;
+    const FlowSeries sure = solve(body, c);
+    CHECK(sure.ending == FlowEnding::confidence);
+    CHECK(sure.uncertainty.statistics <= 0.02);
+    CHECK(sure.samples * sure.interval < 100);
+    CHECK(sure.torque.size() == std::size_t{3} * sure.samples);
+
+    c.confidence = 0;
+    c.duration = 1e4;
+    c.seconds = 1;
+    const FlowSeries late = solve(body, c);
+    CHECK(late.ending == FlowEnding::seconds);
+    CHECK(late.seconds < 5);
+    CHECK(late.samples > 0);
+
+    c.seconds = 0;
+    const auto stop = [](const FlowState& state) { return !state.recording; };
+    const FlowSeries cancelled = solve_flow(body, one_region(body), c, stop);
+    CHECK(cancelled.ending == FlowEnding::cancelled);
+    CHECK(cancelled.samples > 0);
+}
+
+TEST_CASE("pictures show the stream ahead, and the wake", "[flow]") {
+    FlowCase c = unit_case(100, 8, 6, 3);
+    c.pictures = true;
+    const FlowSeries series = solve(test::box({1, 1, 1}), c);
+    REQUIRE(series.slices.size() == 2);
+    for (const FlowSlice& slice : series.slices) {
+        REQUIRE(slice.speed.size() == std::size_t{slice.columns} * slice.rows);
+        const auto at = [&](double x, double across) {
+            const auto column = static_cast<std::size_t>((x - slice.low.x) / slice.spacing);
+            const auto row = static_cast<std::size_t>((across - slice.low[3 - slice.normal]) / slice.spacing);
+            return row * slice.columns + column;
+        };
+        CHECK(std::isnan(slice.speed[at(0, 0)]));
+        CHECK(slice.speed[at(0.9, 0)] < 0.5f);
+        CHECK(slice.speed[at(0, 1.2)] > 1.0f);
+        CHECK(slice.pressure[at(-0.7, 0)] > 0.6f);
+        CHECK(slice.pressure[at(0.7, 0)] < 0.0f);
+    }
+}
+
+TEST_CASE("the lattice turned about the stream changes little", "[flow]") {
+    FlowCase c = unit_case(100, 12, 8, 3);
+    const double straight = Coefficients(solve(test::box({1, 1, 1}), c)).total.x;
+    c.turn = 30;
+    CHECK(Coefficients(solve(test::box({1, 1, 1}), c)).total.x == Approx(straight).epsilon(0.03));
 }
