@@ -27,11 +27,11 @@ struct Preset {
 Preset preset(Quality quality) {
     switch (quality) {
         case Quality::draft:
-            return {18, 40, 10, 6, 8};
+            return {18, 40, 12, 6, 8};
         case Quality::high:
-            return {102, 80, 24, 12, 40};
+            return {102, 80, 36, 12, 40};
         default:
-            return {38, 40, 16, 10, 20};
+            return {38, 40, 24, 10, 20};
     }
 }
 
@@ -99,7 +99,7 @@ std::string provenance(const BakeOptions& options, const BakePlan& plan, const B
     j["mesh"] = options.mesh.substr(options.mesh.find_last_of('/') + 1);
     j["mesh_hash"] = mesh_hash(options.mesh);
     j["quality"] = options.quality == Quality::draft ? "draft" : options.quality == Quality::high ? "high" : "standard";
-    j["solver"] = "lattice Boltzmann D3Q19, regularised, Smagorinsky, interpolated bounce-back (docs/flow.md)";
+    j["solver"] = "lattice Boltzmann D3Q19, regularised, Smagorinsky, interpolated bounce-back, nested blocks (docs/flow.md)";
     j["resolution"] = plan.cases.front().resolution;
     j["start_up_lengths"] = plan.start_up;
     j["period_lengths"] = plan.period;

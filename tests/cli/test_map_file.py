@@ -99,5 +99,7 @@ def test_bench(good):
     results = good("bench", "--seconds", "0.02", "--json").json["results"]
     assert len(results) >= 5 and len({r["name"] for r in results}) == len(results)
     for r in results:
-        assert isinstance(r["name"], str) and r["value"] >= 0 and r["unit"] in ("us", "ns")
+        assert isinstance(r["name"], str) and r["value"] >= 0 and r["unit"] in ("us", "ns", "GB/s", "M/s", "")
+    by_name = {r["name"]: r["value"] for r in results}
+    assert by_name["flow_kernel_mlups"] > 0 and 0 < by_name["flow_nested_share"] < 2
     assert "two-way tick" in good("bench", "--seconds", "0.01").out
