@@ -137,8 +137,8 @@ std::string ending_text(const Options& o, const bake::FlowSeries& flow, const Fl
                           o.confidence, r.longest);
             return text;
     }
-    std::snprintf(text, sizeof text, "stopped early: %s, after %.4g of at most %g lengths\n", why, r.travelled,
-                  r.longest);
+    std::snprintf(text, sizeof text, "stopped early: %s, after %.4g of at most %g lengths%s\n", why, r.travelled,
+                  r.longest, flow.half ? " of the run on half the resolution" : "");
     return text;
 }
 
@@ -260,7 +260,7 @@ void add_effort(CLI::App& command, Options& o) {
         .add_option("--confidence", o.confidence,
                     "stop once the standard error of the mean drag over time is below so many\n"
                     "per cent of it, such as 1 (default: run for --duration)")
-        ->check(number_within(0.01, 100))
+        ->check(number_within(0.1, 100))
         ->type_name("PERCENT");
     command
         .add_option("--seconds", o.flow.seconds,

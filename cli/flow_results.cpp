@@ -14,6 +14,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 // Lift that swings by less than this share of the drag is the solver's own noise, not shedding.
 constexpr double least_swing = 0.005;
+constexpr double least_cycles = 4;
 
 Vec3d sum_of(const std::vector<float>& values, std::size_t sample, std::size_t regions) {
     Vec3d sum;
@@ -62,7 +63,9 @@ void measure_lift(const bake::FlowSeries& flow, const std::vector<Vec3d>& lift, 
     r.cl_rms = std::sqrt(square) / unit;
     r.cl_amplitude = std::sqrt(2 * along) / unit;
     const bake::Peak peak = bake::strongest_peak(signal, flow.interval);
-    if (peak.amplitude > least_swing * std::fabs(drag)) r.strouhal = peak.frequency * r.length / r.speed;
+    // A frequency wants some cycles: one or two are a drift.
+    const bool cycles = peak.frequency * flow.interval * flow.samples >= least_cycles;
+    if (cycles && peak.amplitude > least_swing * std::fabs(drag)) r.strouhal = peak.frequency * r.length / r.speed;
 }
 
 nlohmann::ordered_json parts_of(const bake::FlowUncertainty& u) {
@@ -156,6 +159,7 @@ nlohmann::ordered_json json_of(const bake::FlowSeries& flow, const FlowResults& 
     j["uncertainty"] = flow.uncertainty.total();
     j["uncertainty_parts"] = parts_of(flow.uncertainty);
     j["ending"] = word_for(flow.ending);
+    j["half_resolution"] = flow.half;
     j["samples"] = flow.samples;
     j["interval"] = flow.interval;
     j["blockage"] = plan.blockage;

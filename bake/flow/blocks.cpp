@@ -16,7 +16,7 @@ struct Room {
 // The wake decides the drag of a blunt body, and wants some twenty cells a size for two sizes behind it: with the
 // border at half a size beside and one behind, at 16 cells a size, the drag of a cube at Re 1e4 was 8 % under that of a
 // grid without borders near; with these 1 to 2 %. Cells that are finer still only serve the layer on the wall.
-constexpr Room wall_layer{0.12, 0.15, 0.3}, wake{0.4, 0.5, 2}, wake_section{0.6, 0.8, 2.5};
+constexpr Room wall_layer{0.12, 0.15, 0.3}, wake{0.4, 0.5, 2}, wake_section{0.6, 1.0, 4};
 constexpr double most_in_wake = 36;  // cells a size
 // Far away blockage is 0.2 %. In two dimensions a body is felt much farther.
 constexpr Room far_away{8, 10, 14}, far_section{30, 30, 40};

@@ -23,11 +23,12 @@ constexpr double least_viscosity = 5e-6;
 constexpr double most_viscosity = 0.05, least_speed = 1e-3;
 constexpr double sample_rate = 32;  // samples while the stream travels one reference length
 constexpr std::uint64_t most_steps = 50'000'000;
-constexpr double sponge_share = 0.12;      // of the coarsest block's length
-constexpr double settling = 4;             // lengths until the fine grid has forgotten what it started from
+constexpr double sponge_share = 0.12;  // of the coarsest block's length
+constexpr double settling = 4;         // lengths until the fine grid has forgotten what it started from
 // Where no edge says where the flow leaves a wall, its layer does, and a layer thinner than cells says it wrong: against
 // the literature a sphere has 0.7 % more drag at Re 100 and 24 cells, and 13 to 15 % more at Re 1e4 and 24 to 54 cells.
 constexpr double layer_error = 0.06, most_layer_error = 0.15;  // times (root of Re / cells)^1.5
+constexpr double least_seconds = 1e-3;
 constexpr double most_normal_flow = 0.05;  // share of a spinning wall's speed
 
 std::string number(double v) {
@@ -62,14 +63,16 @@ void check(const FlowCase& c) {
     require(positive(c.duration, 0.5, 1e5), "duration", number(c.duration), "from 0.5 to 100000 reference lengths");
     require(c.threads >= 0 && c.threads <= 4096, "threads", std::to_string(c.threads), "from 0 (automatic) to 4096");
     require(std::isfinite(c.turn) && std::abs(c.turn) <= 360, "turn", number(c.turn), "from -360 to 360 degrees");
-    require(c.confidence == 0 || positive(c.confidence, 1e-4, 1), "confidence", number(c.confidence),
-            "0 (none) or a share from 0.0001 to 1");
-    require(c.seconds == 0 || positive(c.seconds, 1e-3, 1e9), "seconds", number(c.seconds), "0 (no limit) or more");
+    require(c.confidence == 0 || positive(c.confidence, 1e-3, 1), "confidence", number(c.confidence),
+            "0 (none) or a share from 0.001 to 1");
+    require(c.seconds == 0 || positive(c.seconds, least_seconds, 1e9), "seconds", number(c.seconds),
+            "0 (no limit) or from 0.001 to 1e9");
     if (!c.section) {
         require(c.slab == 0, "slab", number(c.slab), "0 where no section is solved");
         return;
     }
     require(!spins, "spin", text(c.spin), "zero for a section");
+    require(c.turn == 0, "turn", number(c.turn), "0 for a section, whose cut it would change");
     require(c.slab == 0 || positive(c.slab, 0.1, 100), "slab", number(c.slab),
             "0 (two dimensions) or from 0.1 to 100 reference lengths");
     require(finite(c.section_normal) && std::abs(length(c.section_normal) - 1) < 1e-3, "section_normal",
@@ -221,14 +224,19 @@ Walls walls_of(const std::vector<Segment>& segments, const Domain& d) {
                     number(static_cast<double>(limit) / mib) + " MiB; lower the resolution");
 }
 
-void advise(const Surface& surface, const Vec3d& size, const FlowCase& c, FlowPlan& plan) {
+void advise(const Surface& surface, const FlowCase& c, int layers, FlowPlan& plan) {
     const auto say = [&](const std::string& more) { plan.warning += (plan.warning.empty() ? "" : "; ") + more; };
-    const double thickness = c.section ? std::min(size.x, size.y) : measure_thickness(surface).thinnest;
+    const double thickness = measure_thickness(surface).thinnest;
     if (thickness < 1.99 * plan.cell) {
         say("the body is " + number(thickness / plan.cell) +
             " cells thick where it is thinnest; below 2 the drag of thin parts is 10 to 15 % off face-on and up to "
             "twice as large edge-on: resolution " +
             number(std::ceil(c.resolution * 2 * plan.cell / std::max(thickness, 1e-9))) + " would give 2");
+    }
+    const double span = plan.blocks.front().cell * static_cast<double>(layers);
+    if (c.slab > 0 && std::abs(span / plan.reference_length / c.slab - 1) > 0.05) {
+        say("a slab of " + number(c.slab) + " reference lengths is solved as " + number(span / plan.reference_length) +
+            ", whole cells of the coarsest block");
     }
     if (plan.reynolds_solved < 0.999 * plan.reynolds) {
         say("Reynolds number " + number(plan.reynolds) + " is solved as " + number(plan.reynolds_solved) +
@@ -263,13 +271,13 @@ void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
 
 }  // namespace
 
-bool starts_coarse(const FlowCase& c) { return c.grid_error && c.resolution >= 8; }
+bool runs_coarse(const FlowCase& c) { return c.grid_error && c.resolution >= 8; }
 
 FlowCase coarser(const FlowCase& c) {
     FlowCase coarse = c;
     coarse.grid_error = false;
     coarse.resolution = 0.5 * c.resolution;
-    coarse.seconds = 0.4 * c.seconds;
+    if (c.seconds > 0) coarse.seconds = std::max(least_seconds, 0.4 * c.seconds);
     coarse.pictures = false;
     return coarse;
 }
@@ -380,7 +388,8 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     d.start_steps = static_cast<std::uint64_t>(start);
     d.samples = static_cast<std::uint32_t>(count);
     d.ramp_steps = static_cast<std::uint64_t>(std::ceil(std::min(2.0, c.start_up / 3) * per_length));
-    if (starts_coarse(c)) {
+    // Not a slab: half the resolution may keep its wake two-dimensional, and it takes a new start's time to lose that.
+    if (runs_coarse(c) && c.slab == 0) {
         const std::uint64_t at_once = std::uint64_t{1} << (d.blocks.size() - 1);
         d.first_step = (d.ramp_steps + at_once - 1) / at_once * at_once;
         d.start_steps =
@@ -393,9 +402,10 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     const double wetted =
         c.section ? 4 * (size.x + size.y) / plan.cell * d.finest().nz : measure(surface).area / (plan.cell * plan.cell);
     plan.bytes = bytes + d.finest().allocated() + static_cast<std::uint64_t>(wetted * 5 * 200);
+    if (runs_coarse(c)) plan.bytes += plan_domain(surface, coarser(c)).plan.bytes;  // it waits for the fine one's start
     if (plan.bytes > c.memory_limit) refuse_memory(static_cast<double>(plan.bytes), c.memory_limit);
     d.walls = c.section ? walls_of(segments, d) : walls_of(surface, d);
-    advise(surface, size, c, plan);
+    advise(surface, c, d.finest().nz, plan);
     return d;
 }
 

@@ -69,9 +69,10 @@ struct Domain {
     }
 };
 
-/// The run on half the resolution that tells the grid's error and gives the finer one its start; whether there is one.
+/// The run on half the resolution that tells the grid's error and, but for slabs, gives the finer one its start; whether there
+/// is one.
 FlowCase coarser(const FlowCase& flow_case);
-bool starts_coarse(const FlowCase& flow_case);
+bool runs_coarse(const FlowCase& flow_case);
 
 /// Checks surface and case and plans the blocks; allocates nothing of the flow's size. Throws BakeError.
 Domain plan_domain(const Surface& surface, const FlowCase& flow_case);

@@ -77,9 +77,9 @@ struct FlowPlan {
 struct FlowUncertainty {
     double statistics = 0;  ///< of a mean over a finite time
     double grid = -1;       ///< of the finest cell: half of the difference to the run on half the resolution, and what
-                            ///< boundary layers on round walls may cost that are thinner than cells; negative: not known
-    double blockage = 0;    ///< of the far field
-    double total() const;   ///< root of the squares of those that are known
+        ///< boundary layers on round walls may cost that are thinner than cells; negative: not known
+    double blockage = 0;   ///< of the far field
+    double total() const;  ///< root of the squares of those that are known
 };
 
 /// Means on a plane of the stream's frame through the body's middle; NaN inside the body. Values are of the last third
@@ -99,6 +99,7 @@ enum class FlowEnding { duration, confidence, seconds, cancelled };
 struct FlowSeries {
     FlowPlan plan;
     FlowEnding ending = FlowEnding::duration;
+    bool half = false;    ///< cancelled before the fine run began: all of this is of the run on half the resolution
     double interval = 0;  ///< s
     std::uint32_t samples = 0;
     std::uint32_t regions = 0;

@@ -165,10 +165,10 @@ std::vector<SolidRun> fill(const Grid& grid, const std::vector<Crossing>& crossi
 
 /// Between a cell inside and one outside there is a wall even where rounding hid it from every triangle: half-way, with
 /// the nearest triangle known to the cell.
-std::uint64_t repair(const Grid& grid, const std::vector<char>& solid, const std::vector<SolidRun>& runs,
-                     std::vector<Hit>& hits) {
+void repair(const Grid& grid, const std::vector<char>& solid, const std::vector<SolidRun>& runs,
+            std::vector<Hit>& hits) {
     std::vector<Hit> missing;
-    if (hits.empty()) return 0;
+    if (hits.empty()) return;
     const auto find = [&](std::uint64_t cell, int direction) {
         return std::lower_bound(hits.begin(), hits.end(), Hit{cell, static_cast<std::uint8_t>(direction), -1, 0});
     };
@@ -189,7 +189,6 @@ std::uint64_t repair(const Grid& grid, const std::vector<char>& solid, const std
     }
     hits.insert(hits.end(), missing.begin(), missing.end());
     std::sort(hits.begin(), hits.end());
-    return missing.size();
 }
 
 }  // namespace
@@ -206,9 +205,8 @@ Body cut_links(const Domain& domain, const Regions& regions) {
     for (const SolidRun& run : body.solid) {
         const std::size_t first = grid.row(run.row);
         for (std::uint32_t x = run.first; x < run.last; ++x) solid[first + x] = 1;
-        body.solid_cells += run.last - run.first;
     }
-    body.repaired = repair(grid, solid, body.solid, hits);
+    repair(grid, solid, body.solid, hits);
 
     const auto cut = [&](std::uint64_t cell, int direction) {
         const Hit key{cell, static_cast<std::uint8_t>(direction), -1, 0};

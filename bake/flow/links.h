@@ -33,8 +33,6 @@ struct SolidRun {
 struct Body {
     std::vector<Link> links;      ///< by region, then cell, then direction
     std::vector<SolidRun> solid;  ///< by row
-    std::uint64_t solid_cells = 0;
-    std::uint64_t repaired = 0;  ///< links between inside and outside that no triangle was found on
 };
 
 Body cut_links(const Domain& domain, const Regions& regions);

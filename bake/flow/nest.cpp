@@ -12,6 +12,7 @@ namespace {
 
 // Smagorinsky's constant: that of channels. 0.17, of isotropic turbulence, made a sphere's drag at Re 1000 8 % higher.
 constexpr float smagorinsky = 0.1f * 0.1f;
+constexpr double pi = 3.14159265358979323846;
 constexpr double sway_y = 0.05, sway_z = 0.03;  // of the stream's speed
 constexpr float soundest = 0.3f;
 
@@ -72,12 +73,14 @@ std::array<float, 3> Nest::stream(std::uint64_t step) const {
     const auto now = static_cast<double>(step);
     const double across = domain_.stream_speed * sway(now);
     return {static_cast<float>(domain_.stream_speed * ramp(now)), static_cast<float>(sway_y * across),
-            domain_.finest().nz == 1 ? 0.0f : static_cast<float>(sway_z * across)};
+            domain_.finest().periodic ? 0.0f : static_cast<float>(sway_z * across)};
 }
 
 void Nest::set_push(Level& level, std::uint64_t steps) const {
     const std::array<float, 3> now = stream(level.step), then = stream(level.step + steps);
     for (std::size_t i = 0; i < 3; ++i) level.collision.push[i] = then[i] - now[i];
+    // Along the span of a slab the sway differs, or its wake would stay two-dimensional for a hundred heights.
+    level.ripple = domain_.finest().periodic && domain_.finest().nz > 1 ? level.collision.push[1] : 0.0f;
 }
 
 void Nest::advance(const std::function<void(std::uint64_t)>& after_step) {
@@ -154,7 +157,12 @@ void Nest::bulk(std::size_t l) {
     const bool outermost = l + 1 == levels_.size();
     const auto far = stream_populations(stream(level.step + (std::uint64_t{1} << l)));
     level.shares->each([&](std::size_t r) {
-        collide_row(grid, *level.from, *level.to, r, 0, grid.pitch(), level.collision);
+        Collision collision = level.collision;
+        if (level.ripple != 0) {
+            const double place = 2 * pi * grid.row_z(r) / grid.nz;
+            collision.push[1] += level.ripple * static_cast<float>(std::cos(place) + std::cos(2 * place + 1));
+        }
+        collide_row(grid, *level.from, *level.to, r, 0, grid.pitch(), collision);
         if (l == 0) empty_solid(r);
         if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
     });

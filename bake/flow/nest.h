@@ -49,6 +49,7 @@ private:
         std::vector<float> relaxation;  // for each cell of a row
         Collision collision;
         std::unique_ptr<Shares> shares;
+        float ripple = 0;        // what the push across differs by along a slab's span
         std::uint64_t step = 0;  // in finest steps
         bool second = false;     // of two in the coarser block's step
     };

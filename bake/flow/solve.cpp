@@ -27,8 +27,9 @@ using Clock = std::chrono::steady_clock;
 // sides of this box give way a little: 1.8 between boxes of 3 % and of 0.4 % (1.3 for a sphere at Re 100, 2.2 for a
 // cube at Re 1e4).
 constexpr double blockage_factor = 1.8, section_blockage_factor = 0;
-constexpr double least_statistics = 1e-3;
-constexpr double grid_share = 0.5;  // of the difference to the run on half the resolution
+constexpr double least_statistics = 1e-3, least_known = 0.5;  // lengths under which a mean says nothing
+constexpr double section_blockage = 0.01;  // three times the room lowers the drag of sections at Re 100 by so much
+constexpr double grid_share = 0.5;         // of the difference to the run on half the resolution
 constexpr std::uint64_t guard_steps = 64;
 constexpr double progress_seconds = 0.3;
 constexpr double picture_every = 0.5;                  // lengths
@@ -38,9 +39,9 @@ double seconds_since(Clock::time_point then) { return std::chrono::duration<doub
 
 class Run {
 public:
-    /// `before`, `after`: cell updates of other runs that count in the progress shown.
+    /// `before`, `after`: cell updates of other runs that count in the progress shown; `begin`: when all of it began.
     Run(const Domain& domain, const Regions& regions, const FlowCase& c, const FlowProgress& progress, double before,
-        double after)
+        double after, Clock::time_point begin)
         : domain_(domain),
           case_(c),
           progress_(progress),
@@ -52,6 +53,7 @@ public:
           sample_(regions.count),
           before_updates_(before),
           after_updates_(after),
+          begin_(begin),
           started_(Clock::now()) {
         if (wall_.stretches() == 0) {
             throw BakeError("flow: the lattice does not meet the body; raise resolution or check the surface's scale");
@@ -120,17 +122,18 @@ private:
 
     /// What the run is about: the drag, or the torque against the spin where there is no stream.
     double quantity(const std::vector<Load>& loads) const {
-        double sum = 0;
-        const Vec3d axis = spins_alone() ? domain_.spin / length(domain_.spin) : Vec3d{1, 0, 0};
+        Vec3d force, torque;
         for (const Load& load : loads) {
-            const double* const v = spins_alone() ? load.torque : load.force;
-            sum += v[0] * axis.x + v[1] * axis.y + v[2] * axis.z;
+            force += Vec3d{load.force[0], load.force[1], load.force[2]};
+            torque += Vec3d{load.torque[0], load.torque[1], load.torque[2]};
         }
-        return spins_alone() ? -sum : sum;
+        if (!spins_alone()) return force.x;
+        const Vec3d centre = domain_.frame.to_stream(case_.spin_centre) / domain_.plan.cell;
+        return -dot(torque - cross(centre, force), domain_.spin / length(domain_.spin));
     }
 
     void store() {
-        if (!spins_alone()) wall_.limit_friction(sample_, domain_.stream_speed, domain_.plan.reynolds);
+        if (!spins_alone()) wall_.limit_friction(sample_, domain_.lattice_speed, domain_.plan.reynolds);
         measure_.push_back(quantity(sample_));
         Load whole;
         for (Load& load : sample_) {
@@ -225,10 +228,10 @@ private:
         if (recorded_lengths() >= 1 && coefficient != 0) {
             s.statistics = standard_error(measure_) / std::abs(coefficient);
         }
-        const double elapsed = seconds_since(started_);
+        const double elapsed = seconds_since(begin_);
         s.seconds_left = s.share > 0.01 ? elapsed * (1 - s.share) / s.share : -1;
         if (case_.seconds > 0) {
-            const double limit = std::max(0.0, case_.seconds - elapsed);
+            const double limit = std::max(0.0, case_.seconds - seconds_since(started_));
             s.seconds_left = s.seconds_left < 0 ? limit : std::min(s.seconds_left, limit);
         }
         return s;
@@ -248,7 +251,8 @@ private:
     }
     double blockage_share(double cd) const {
         const double factor = case_.section ? section_blockage_factor : blockage_factor;
-        return spins_alone() ? 0 : factor * std::max(cd, 0.0) * domain_.plan.blockage;
+        // Maskell's wake is that of a body at rest.
+        return domain_.radius > 0 ? 0 : factor * std::max(cd, 0.0) * domain_.plan.blockage;
     }
     double free_stream(double cd) const { return 1 / (1 + blockage_share(cd)); }
 
@@ -261,7 +265,8 @@ private:
         for (float& v : series_.torque) v *= scale;
         series_.uncertainty.statistics =
             average != 0 ? std::max(least_statistics, standard_error(measure_) / std::abs(average)) : 1;
-        series_.uncertainty.blockage = std::max(1e-3, 0.5 * blockage_share(cd));
+        if (recorded_lengths() < least_known) series_.uncertainty.statistics = 1;
+        series_.uncertainty.blockage = std::max(case_.section ? section_blockage : 1e-3, 0.5 * blockage_share(cd));
         if (case_.pictures) {
             if (!picture_) {  // it ended early
                 picture_ = std::make_unique<Picture>(domain_);
@@ -288,10 +293,10 @@ private:
     double before_updates_, after_updates_;
     bool met_ = false;
     std::uint64_t guarded_ = 0;
-    Clock::time_point started_, reported_;
+    Clock::time_point begin_, started_, reported_;
 };
 
-/// The mean drag, or the torque where only spin drives the flow.
+/// The mean drag, or the torque (about the mesh's origin) where only spin drives the flow.
 double mean_quantity(const FlowSeries& s, const FlowCase& c) {
     double sum = 0;
     if (c.speed == 0) {
@@ -312,13 +317,16 @@ FlowSeries solve_twice(const Surface& surface, const Regions& regions, const Dom
     const Clock::time_point started = Clock::now();
     const FlowCase half = coarser(c);
     const Domain coarse_domain = plan_domain(surface, half);
-    auto coarse = std::make_unique<Run>(coarse_domain, regions, half, progress, 0, domain.plan.updates);
+    auto coarse = std::make_unique<Run>(coarse_domain, regions, half, progress, 0, domain.plan.updates, started);
     FlowSeries first = coarse->solve();
-    if (first.ending == FlowEnding::cancelled) return first;
+    if (first.ending == FlowEnding::cancelled) {
+        first.half = true;
+        return first;
+    }
     FlowCase rest = c;
     if (c.seconds > 0) rest.seconds = std::max(1e-3, c.seconds - seconds_since(started));
-    Run run(domain, regions, rest, progress, coarse_domain.plan.updates, 0);
-    run.start_from(*coarse);
+    Run run(domain, regions, rest, progress, coarse_domain.plan.updates, 0, started);
+    if (domain.first_step > 0) run.start_from(*coarse);
     coarse.reset();
     FlowSeries series = run.solve();
     series.coarse_drag = mean_quantity(first, c);
@@ -362,7 +370,8 @@ FlowSeries solve_flow(const Surface& surface, const Regions& regions, const Flow
                         " MiB more than memory_limit leaves; lower duration");
     }
     try {
-        if (!flow::starts_coarse(flow_case)) return flow::Run(domain, regions, flow_case, progress, 0, 0).solve();
+        if (!flow::runs_coarse(flow_case))
+            return flow::Run(domain, regions, flow_case, progress, 0, 0, flow::Clock::now()).solve();
         return flow::solve_twice(surface, regions, domain, flow_case, progress);
     } catch (const std::bad_alloc&) {
         throw BakeError("flow: out of memory; " + std::to_string(domain.plan.bytes >> 20) +

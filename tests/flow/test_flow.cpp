@@ -234,6 +234,11 @@ TEST_CASE("what is wrong with a case is named", "[flow]") {
     CHECK(mentions(error_with([&](FlowCase& c) { c.spin = {0, 0, 1}; }), "revolution"));
     CHECK(mentions(error_with([&](FlowCase& c) {
                        c.section = true;
+                       c.turn = 30;
+                   }),
+                   "turn"));
+    CHECK(mentions(error_with([&](FlowCase& c) {
+                       c.section = true;
                        c.section_normal = {1, 0, 0};
                    }),
                    "section_normal"));
@@ -331,8 +336,23 @@ TEST_CASE("a slab of a section has the force of its span", "[flow]") {
     c.slab = 1.5;
     const FlowPlan plan = plan_flow(cylinder, c);
     CHECK(plan.blocks.front().high.z - plan.blocks.front().low.z > 1);
+    CHECK(mentions(plan.warning, "slab"));  // 1.5 is no whole number of coarsest cells
     // At this Reynolds number nothing happens along the span.
     CHECK(Coefficients(solve(cylinder, c)).total.x == Approx(flat.total.x).epsilon(0.01));
+}
+
+TEST_CASE("the layers of a slab differ once its wake is three-dimensional", "[flow]") {
+    FlowCase c = unit_case(1e4, 8, 20, 4);
+    c.section = true;
+    c.slab = 4;
+    const FlowSeries series = solve(test::box({1, 1, 2}), c);
+    double across = 0, along = 0;
+    for (std::size_t i = 0; i < series.pressure.size(); i += 3) {
+        across = std::max(across, std::abs(static_cast<double>(series.pressure[i + 1])));
+        along = std::max(along, std::abs(static_cast<double>(series.friction[i + 2])));
+    }
+    CHECK(across > 0);
+    CHECK(along > 1e-3 * across);
 }
 
 TEST_CASE("a run ends when it knows enough, or when its time is up", "[flow]") {
