@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -42,6 +43,8 @@ int run_python(const std::vector<std::string>& arguments) {
     const pid_t child = fork();
     if (child < 0) throw Failure("--report: a process cannot be started");
     if (child == 0) {
+        // Ctrl-C ends what is computed, not the page of it: drawing takes seconds, and without the page all would be lost.
+        std::signal(SIGINT, SIG_IGN);
         // Standard output is the caller's: --json must be alone there.
         if (!freopen("/dev/null", "w", stdout)) _exit(127);
         setenv("PYTHONPATH", package_path().c_str(), 1);
