@@ -71,7 +71,7 @@ def test_version(good):
     ("--speed|-1", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "-1"]),
     ("--speed|0", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "0"]),
     ("--speed|nan", ["flow", "a.glb", "--direction", "1,0,0", "--speed", "nan"]),
-    ("--confidence|0|0.01 to 100", [*FLOW, "--confidence", "0"]),
+    ("--confidence|0|0.1 to 100", [*FLOW, "--confidence", "0"]),
     ("--confidence|1%", [*FLOW, "--confidence", "1%"]),
     ("--seconds|-1", [*FLOW, "--seconds", "-1"]),
     ("--seconds|soon", [*FLOW, "--seconds", "soon"]),

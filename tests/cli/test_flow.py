@@ -122,8 +122,8 @@ def test_confidence_ends_a_run(good, box):
 
 
 def test_a_confidence_that_is_not_reached_is_told(good, box, tmp_path):
-    outcome = good("flow", box, *SECTION, "--duration", "1", "--confidence", "0.01", "-o", tmp_path / "s.csv")
-    assert "--confidence 0.01 is not reached" in outcome.err and "--duration" in outcome.err
+    outcome = good("flow", box, *SECTION, "--duration", "1", "--confidence", "0.1", "-o", tmp_path / "s.csv")
+    assert "--confidence 0.1 is not reached" in outcome.err and "--duration" in outcome.err
 
 
 def test_seconds_end_a_run(good, box, tmp_path):
