@@ -224,26 +224,6 @@ Walls walls_of(const std::vector<Segment>& segments, const Domain& d) {
                     number(static_cast<double>(limit) / mib) + " MiB; lower the resolution");
 }
 
-void advise(const Surface& surface, const FlowCase& c, int layers, FlowPlan& plan) {
-    const auto say = [&](const std::string& more) { plan.warning += (plan.warning.empty() ? "" : "; ") + more; };
-    const double thickness = measure_thickness(surface).thinnest;
-    if (thickness < 1.99 * plan.cell) {
-        say("the body is " + number(thickness / plan.cell) +
-            " cells thick where it is thinnest; below 2 the drag of thin parts is 10 to 15 % off face-on and up to "
-            "twice as large edge-on: resolution " +
-            number(std::ceil(c.resolution * 2 * plan.cell / std::max(thickness, 1e-9))) + " would give 2");
-    }
-    const double span = plan.blocks.front().cell * static_cast<double>(layers);
-    if (c.slab > 0 && std::abs(span / plan.reference_length / c.slab - 1) > 0.05) {
-        say("a slab of " + number(c.slab) + " reference lengths is solved as " + number(span / plan.reference_length) +
-            ", whole cells of the coarsest block");
-    }
-    if (plan.reynolds_solved < 0.999 * plan.reynolds) {
-        say("Reynolds number " + number(plan.reynolds) + " is solved as " + number(plan.reynolds_solved) +
-            ", the most that this many cells carry");
-    }
-}
-
 /// Only a body that its own turning leaves where it is can spin: nodes would else change between body and water.
 void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
     const double rate = length(c.spin);
@@ -270,6 +250,29 @@ void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
 }
 
 }  // namespace
+
+std::string advice(const Surface& surface, const FlowCase& c, const Domain& d) {
+    const FlowPlan& plan = d.plan;
+    std::string warning;
+    const auto say = [&](const std::string& more) { warning += (warning.empty() ? "" : "; ") + more; };
+    const double thickness = measure_thickness(surface).thinnest;
+    if (thickness < 1.99 * plan.cell) {
+        say("the body is " + number(thickness / plan.cell) +
+            " cells thick where it is thinnest; below 2 the drag of thin parts is 10 to 15 % off face-on and up to "
+            "twice as large edge-on: resolution " +
+            number(std::ceil(c.resolution * 2 * plan.cell / std::max(thickness, 1e-9))) + " would give 2");
+    }
+    const double span = plan.cell * d.finest().nz;
+    if (c.slab > 0 && std::abs(span / plan.reference_length / c.slab - 1) > 0.05) {
+        say("a slab of " + number(c.slab) + " reference lengths is solved as " + number(span / plan.reference_length) +
+            ", whole cells of the coarsest block");
+    }
+    if (plan.reynolds_solved < 0.999 * plan.reynolds) {
+        say("Reynolds number " + number(plan.reynolds) + " is solved as " + number(plan.reynolds_solved) +
+            ", the most that this many cells carry");
+    }
+    return warning;
+}
 
 bool runs_coarse(const FlowCase& c) { return c.grid_error && c.resolution >= 8; }
 
@@ -405,7 +408,6 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     if (runs_coarse(c)) plan.bytes += plan_domain(surface, coarser(c)).plan.bytes;  // it waits for the fine one's start
     if (plan.bytes > c.memory_limit) refuse_memory(static_cast<double>(plan.bytes), c.memory_limit);
     d.walls = c.section ? walls_of(segments, d) : walls_of(surface, d);
-    advise(surface, c, d.finest().nz, plan);
     return d;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "bake/flow/flow.h"
@@ -73,6 +74,10 @@ struct Domain {
 /// is one.
 FlowCase coarser(const FlowCase& flow_case);
 bool runs_coarse(const FlowCase& flow_case);
+
+/// What a user should know of a planned case: parts thinner than two cells and the like; empty if there is nothing. Apart
+/// from the plan because it looks through the whole surface, and a run does not need it.
+std::string advice(const Surface& surface, const FlowCase& flow_case, const Domain& domain);
 
 /// Checks surface and case and plans the blocks; allocates nothing of the flow's size. Throws BakeError.
 Domain plan_domain(const Surface& surface, const FlowCase& flow_case);

@@ -69,7 +69,7 @@ struct FlowPlan {
     std::uint64_t bytes = 0;
     std::array<Vec3d, 3> axes;      ///< the stream's frame in the mesh's: x along the stream
     std::vector<FlowBlock> blocks;  ///< finest first
-    std::string warning;            ///< empty, or what a user should know (thinner than two cells, ...)
+    std::string warning;            ///< of plan_flow: empty, or what a user should know (thinner than two cells, ...)
 };
 
 /// What is not known of the mean drag (of the torque where only spin drives the flow): one standard error or its

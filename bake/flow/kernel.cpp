@@ -125,13 +125,13 @@ void rebuild_cells(const float* const* in, std::size_t count, float scale, float
 
 }  // namespace
 
-void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, std::size_t first,
-                 std::size_t last, const Collision& collision) {
-    const std::size_t begin = grid.row(r) + first;
-    const Pull in = pull(grid, from, begin, grid.row_z(r));
+void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r,
+                 const Collision& collision) {
+    const std::size_t first = grid.row(r);
+    const Pull in = pull(grid, from, first, grid.row_z(r));
     Push out;
-    for (int i = 0; i < direction_count; ++i) out.to[i] = to.at(i) + begin;
-    collide(in, out, last - first, collision.relaxation + first, collision.smagorinsky, collision.push);
+    for (int i = 0; i < direction_count; ++i) out.to[i] = to.at(i) + first;
+    collide(in, out, grid.pitch(), collision.relaxation, collision.smagorinsky, collision.push);
 }
 
 void observe(const Grid& grid, const Populations& from, int i, int j, int k, std::size_t count, float relaxation,

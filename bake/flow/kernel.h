@@ -15,9 +15,8 @@ struct Collision {
     float push[3] = {};                 ///< velocity gained by the fluid in this step (the start-up's acceleration)
 };
 
-/// Cells [first, last) of row r of `to` from the neighbours in `from`; ghosts among them are left with no meaning.
-void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, std::size_t first,
-                 std::size_t last, const Collision& collision);
+/// Row r of `to` from the neighbours in `from`. The row's ghosts are left with no meaning.
+void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision);
 
 /// What blocks exchange of a cell: density less one, velocity, and stress over relaxation time (xx, yy, zz, xy, xz,
 /// yz), which is the rate of strain but for constants: smooth across a change of cell size, where populations are not.

@@ -162,7 +162,7 @@ void Nest::bulk(std::size_t l) {
             const double place = 2 * pi * grid.row_z(r) / grid.nz;
             collision.push[1] += level.ripple * static_cast<float>(std::cos(place) + std::cos(2 * place + 1));
         }
-        collide_row(grid, *level.from, *level.to, r, 0, grid.pitch(), collision);
+        collide_row(grid, *level.from, *level.to, r, collision);
         if (l == 0) empty_solid(r);
         if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
     });

@@ -138,9 +138,6 @@ void Refinement::fill(Populations& fine, float share, const float* push, std::si
     const float old_share = 1 - share;
     ConstFields in{};
     for (int f = 0; f < field_count; ++f) {
-        const auto blended = [&](int r, std::size_t u) {
-            return old_share * face.row(1 - newest_, f, r)[u] + share * face.row(newest_, f, r)[u];
-        };
         if (between) {
             const float *a0 = face.row(1 - newest_, f, rows[0]), *a1 = face.row(newest_, f, rows[0]);
             const float *b0 = face.row(1 - newest_, f, rows[1]), *b1 = face.row(newest_, f, rows[1]);
@@ -151,7 +148,8 @@ void Refinement::fill(Populations& fine, float share, const float* push, std::si
                     old_share * half_way(a0[u], b0[u], c0[u], d0[u]) + share * half_way(a1[u], b1[u], c1[u], d1[u]);
             }
         } else {
-            for (std::size_t u = 0; u < nu; ++u) line[u] = blended(rows[1], u);
+            const float *a0 = face.row(1 - newest_, f, rows[1]), *a1 = face.row(newest_, f, rows[1]);
+            for (std::size_t u = 0; u < nu; ++u) line[u] = old_share * a0[u] + share * a1[u];
         }
         float* const out = fields + static_cast<std::size_t>(f) * fine_nu;
         const std::size_t pairs = fine_nu / 2;

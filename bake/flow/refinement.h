@@ -1,7 +1,8 @@
 // Where a block meets the next coarser one. The fine block's ghosts lie on planes of coarse nodes; the coarse block's
-// nodes two cells further in lie on fine nodes (the one between is its own still). What passes is density, velocity and rate of strain (kernel.h), from
-// which populations of the other cell size are rebuilt: the rescaling of Dupuis & Chopard 2003, Phys. Rev. E 67,
-// done on moments; cubic interpolation in the planes as in Lagrava et al. 2012, J. Comput. Phys. 231; linear in time.
+// nodes two cells further in lie on fine nodes (the one between is its own still). What passes is density, velocity and
+// rate of strain (kernel.h), from which populations of the other cell size are rebuilt: the rescaling of Dupuis &
+// Chopard 2003, Phys. Rev. E 67, done on moments; cubic interpolation in the planes as in Lagrava et al. 2012,
+// J. Comput. Phys. 231; linear in time.
 #pragma once
 
 #include <array>

@@ -190,9 +190,9 @@ private:
         if (case_.confidence > 0 && lengths >= checked_ + check_every) {
             checked_ = lengths;
             const double average = mean(measure_);
-            known_ = average != 0 ? standard_error(measure_) / std::abs(average) : 1;
+            const double known = average != 0 ? standard_error(measure_) / std::abs(average) : 1;
             // Twice in a row: the error itself is an estimate, and a look at each of many would find it low once.
-            const bool met = lengths >= least_record && known_ <= case_.confidence;
+            const bool met = lengths >= least_record && known <= case_.confidence;
             if (met && met_) return end(FlowEnding::confidence);
             met_ = met;
         }
@@ -287,7 +287,7 @@ private:
     FlowSeries series_;
     std::vector<double> measure_;  // the quantity, a value a sample, in lattice units
     std::vector<Load> loads_, before_, sample_;
-    double now_ = 0, shown_ = 0, checked_ = 0, known_ = 1;
+    double now_ = 0, shown_ = 0, checked_ = 0;
     std::unique_ptr<Picture> picture_;
     double pictured_ = -1e30;
     double before_updates_, after_updates_;
@@ -347,7 +347,9 @@ double FlowUncertainty::total() const {
 }
 
 FlowPlan plan_flow(const Surface& surface, const FlowCase& flow_case) {
-    return flow::plan_domain(surface, flow_case).plan;
+    flow::Domain domain = flow::plan_domain(surface, flow_case);
+    domain.plan.warning = flow::advice(surface, flow_case, domain);
+    return domain.plan;
 }
 
 FlowSeries solve_flow(const Surface& surface, const Regions& regions, const FlowCase& flow_case,
