@@ -14,13 +14,10 @@ slices.f32  little-endian 32-bit floats. A slice is "rows" times "columns" speed
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import sys
 from pathlib import Path
 
-from ._base import Error
-from ._library import LibraryError
-from .report import Unusable, write_whole
+from .report import run_program, write_whole
 
 
 def write_report(folder, output=None) -> None:
@@ -36,20 +33,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("folder", metavar="DIR", help="what `frm flow --report` wrote")
     parser.add_argument("-o", "--output", metavar="FILE", help="the page to write (default: DIR/report.html)")
     options = parser.parse_args(arguments)
-    if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib")):
-        print("frm.flow_report: matplotlib is not installed; apt install python3-matplotlib", file=sys.stderr)
-        return 1
-    try:
-        write_report(options.folder, options.output)
-    except (Error, LibraryError, Unusable) as error:
-        print(f"frm.flow_report: {error}", file=sys.stderr)
-        return 1
-    except OSError as error:
-        print(f"frm.flow_report: {error.filename or options.folder}: {error.strerror}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+    return run_program("frm.flow_report", options.folder, lambda: write_report(options.folder, options.output))
 
 
 if __name__ == "__main__":

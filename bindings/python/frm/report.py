@@ -65,6 +65,25 @@ def write_whole(output: Path, page: str) -> None:
         raise
 
 
+def run_program(name: str, output, draw) -> int:
+    """Calls `draw`; the exit status. What went wrong is told on standard error, of `output` where no file is named."""
+    if any(importlib.util.find_spec(package) is None for package in ("numpy", "matplotlib")):
+        print(f"{name}: matplotlib is not installed; apt install python3-matplotlib", file=sys.stderr)
+        return 1
+    try:
+        draw()
+    except (Error, LibraryError, Unusable) as error:
+        text = error.text if isinstance(error, Error) and error.text else error
+        print(f"{name}: {text}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"{name}: {error.filename or output}: {error.strerror}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="frm.report",
                                      description="Replays a recording and shows it as one page.")
@@ -76,23 +95,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--frames", type=int, default=12, metavar="N", choices=range(1, 61),
                         help="pictures of the water, 1 to 60 (default: %(default)s)")
     options = parser.parse_args(arguments)
-    if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib")):
-        print("frm.report: matplotlib is not installed; apt install python3-matplotlib", file=sys.stderr)
-        return 1
-    try:
+
+    def draw():
         run = read_run(options.run) if options.run else None
         write_report(options.recording, options.output, run, options.frames)
-    except (Error, LibraryError, Unusable) as error:
-        text = error.text if isinstance(error, Error) and error.text else error
-        print(f"frm.report: {text}", file=sys.stderr)
-        return 1
-    except OSError as error:
-        print(f"frm.report: {error.filename or options.output}: {error.strerror}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    print(options.output)
-    return 0
+
+    status = run_program("frm.report", options.output, draw)
+    if status == 0:
+        print(options.output)
+    return status
 
 
 if __name__ == "__main__":
