@@ -1,4 +1,5 @@
-// The whole bake: mesh -> surface -> regions -> a flow for every direction -> periodic series -> map.
+// The whole bake: mesh -> surface -> patches -> flows (tasks) -> map. A plan says what to compute, tasks compute it in
+// any order, and what they found makes the map or asks for more of them.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/flow/flow.h"
+#include "bake/tasks/task.h"
 #include "core/map/map.h"
 
 namespace frm::bake {
@@ -23,40 +24,48 @@ struct BakeOptions {
     std::uint32_t sources = 0;     ///< 1 to 4096; 0: by quality
     double resolution = 0;         ///< grid cells across the reference length; 0: by quality
     std::uint32_t triangles = 0;   ///< most sample triangles; 0: 2,000
-    int threads = 0;
+    int threads = 0;               ///< of bake() alone; the map does not depend on it
 };
 
-/// What the options come to for this mesh; known before the hours begin.
+/// What the options come to for this mesh; known before the hours begin. The same options and mesh give the same plan
+/// on every machine.
 struct BakePlan {
-    Surface surface;  ///< tessellated
-    Regions regions;
+    BakeOptions options;
+    std::string mesh_hash;           ///< of the file's bytes
+    Surface surface;                 ///< tessellated
+    Regions patches;                 ///< what a flow's forces are recorded on
+    Regions regions;                 ///< the haptic regions: what the map stores
     std::vector<std::string> notes;  ///< repairs and warnings for the user
     DirectionSet directions;
     double reference_length = 0;                   ///< m
     double start_up = 0, period = 0, overlap = 0;  ///< reference lengths travelled
     std::uint32_t harmonics = 0, samples = 0;
-    std::vector<FlowCase> cases;  ///< one a direction
-    std::vector<FlowPlan> flows;
-    double cell_updates = 0;  ///< all cases together
+    std::vector<Task> tasks;  ///< of the first round, and of those that extend_plan() added
 };
 
 struct DirectionReport {
     Vec3d direction;
     double drag_coefficient = 0;  ///< on the projected area
     double uncertainty = 0;       ///< standard error of the mean drag, share
-    double seconds = 0;
-    double mlups = 0;
 };
 
 struct BakeReport {
     std::vector<DirectionReport> directions;
-    double seconds = 0;
 };
 
-/// How a bake tells what it is doing: share done, 0 to 1, and a note. Returning false cancels (FlowCancelled).
+/// Throws BakeError or MeshError, naming what cannot be.
 BakePlan plan_bake(const BakeOptions& options);
-std::unique_ptr<Map> bake(const BakeOptions& options, const BakePlan& plan, const Progress& progress,
-                          BakeReport& report);
+
+/// After all tasks are done: adds the tasks that their results ask for (results[k] is of tasks[k]). False if there are
+/// none: the map can be made.
+bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results);
+
+/// The map of a plan whose tasks are all done. The same bytes wherever and in whatever order they were.
+std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult>& results, BakeReport& report);
+
+/// All of it, in memory: rounds of tasks until the plan asks for no more, then the map. `progress` gets the share done, 0 to
+/// 1, and a note, from any thread; returning false cancels (FlowCancelled).
+std::unique_ptr<Map> bake(BakePlan& plan, const Progress& progress, BakeReport& report);
 
 /// The surface of a mesh file, closed and oriented; what was repaired is appended to `notes`.
 Surface load_surface(const std::string& path, std::vector<std::string>& notes);

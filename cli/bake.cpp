@@ -1,6 +1,7 @@
 // frm bake.
 #include "bake/bake.h"
 
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -27,11 +28,15 @@ bake::Quality quality_of(const std::string& word) {
 void print_plan(const bake::BakePlan& plan) {
     for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     std::uint64_t bytes = 0;
-    for (const bake::FlowPlan& flow : plan.flows) bytes = std::max(bytes, flow.bytes);
+    double updates = 0;
+    for (const bake::Task& task : plan.tasks) {
+        bytes = std::max(bytes, task.cost.bytes);
+        updates += task.cost.updates;
+    }
     std::fprintf(
         stderr,
         "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory for each that runs at a time\n",
-        plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), plan.cell_updates,
+        plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), updates,
         static_cast<double>(bytes) / 1e6);
 }
 
@@ -39,14 +44,15 @@ void run(Options& o) {
     o.bake.quality = quality_of(o.quality);
     require_distinct({o.out}, {o.bake.mesh});
     require_writable(o.out);
-    const bake::BakePlan plan = load_or_show(o.bake.mesh, o.out, [&] { return bake::plan_bake(o.bake); });
+    bake::BakePlan plan = load_or_show(o.bake.mesh, o.out, [&] { return bake::plan_bake(o.bake); });
     print_plan(plan);
     bake::BakeReport report;
     std::unique_ptr<Map> map;
+    const auto begin = std::chrono::steady_clock::now();
     {
         ProgressBar bar("bake");
         map = bake::bake(
-            o.bake, plan, [&](double share, const std::string& note) { return bar.update(share, note); }, report);
+            plan, [&](double share, const std::string& note) { return bar.update(share, note); }, report);
     }
     const std::vector<std::uint8_t> file = encode_map(*map);
     write_file(o.out, file.data(), file.size());
@@ -58,7 +64,9 @@ void run(Options& o) {
             stderr,
             "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",
             100 * worst);
-    const double updates = plan.cell_updates / report.seconds / 1e6;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    double updates = 0;
+    for (const bake::Task& task : plan.tasks) updates += task.cost.updates / seconds / 1e6;
     if (o.json) {
         nlohmann::ordered_json j{{"file", o.out},
                                  {"file_bytes", file.size()},
@@ -70,13 +78,13 @@ void run(Options& o) {
                                  {"uncertainty", worst},
                                  {"quantisation_error", map->facts.quantisation_error},
                                  {"mlups", updates},
-                                 {"seconds", report.seconds}};
+                                 {"seconds", seconds}};
         std::printf("%s\n", j.dump(2).c_str());
     } else {
         std::printf(
             "%s: %.1f kB, %u directions, %u sources, %u samples, in %.1f s (%.0f million cell updates a second)\n",
             o.out.c_str(), static_cast<double>(file.size()) / 1e3, map->directions.count(), map->source_count(),
-            map->samples, report.seconds, updates);
+            map->samples, seconds, updates);
         std::printf(
             "mean drag is uncertain by %.1f %% (worst direction); fluctuations are stored to %.2g of the peak force\n",
             100 * worst, static_cast<double>(map->facts.quantisation_error));

@@ -31,9 +31,9 @@ TEST_CASE("a bake is the same bytes again, with any number of threads, and pushe
     std::vector<std::uint8_t> first;
     for (const int threads : {1, 2}) {
         options.threads = threads;
-        const BakePlan plan = plan_bake(options);
+        BakePlan plan = plan_bake(options);
         BakeReport report;
-        const std::unique_ptr<Map> map = bake::bake(options, plan, nullptr, report);
+        const std::unique_ptr<Map> map = bake::bake(plan, nullptr, report);
         const auto file = encode_map(*map);
         if (first.empty()) {
             first = file;
@@ -58,10 +58,10 @@ TEST_CASE("a bake is the same bytes again, with any number of threads, and pushe
 
 TEST_CASE("a bake can be cancelled", "[bake]") {
     const BakeOptions options = small_bake();
-    const BakePlan plan = plan_bake(options);
+    BakePlan plan = plan_bake(options);
     BakeReport report;
     CHECK_THROWS_AS(bake::bake(
-                        options, plan, [](double share, const std::string&) { return share < 0.05; }, report),
+                        plan, [](double share, const std::string&) { return share < 0.05; }, report),
                     FlowCancelled);
 }
 
