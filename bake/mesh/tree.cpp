@@ -15,6 +15,37 @@ void grow(Box& box, const Box& by) {
     }
 }
 
+double squared_distance_to(const Box& box, const Vec3d& p) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double outside = std::max({box.low[i] - p[i], p[i] - box.high[i], 0.0});
+        sum += outside * outside;
+    }
+    return sum;
+}
+
+// Which corner, edge or face of the triangle is nearest, by the signs of areas (Ericson, Real-Time Collision Detection,
+// 5.1.5). A triangle without area ends at one of its edges.
+double squared_distance_to(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& p) {
+    const auto squared = [](const Vec3d& v) { return dot(v, v); };
+    const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return squared(ap);
+    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return squared(bp);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared(ap - ab * (d1 > d3 ? d1 / (d1 - d3) : 0));
+    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return squared(cp);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared(ap - ac * (d2 > d6 ? d2 / (d2 - d6) : 0));
+    const double va = d3 * d6 - d5 * d4, along = d4 - d3, back = d5 - d6;
+    if (va <= 0 && along >= 0 && back >= 0)
+        return squared(bp - (c - b) * (along + back > 0 ? along / (along + back) : 0));
+    const double all = 1 / (va + vb + vc);
+    return squared(ap - ab * (vb * all) - ac * (vc * all));
+}
+
 }  // namespace
 
 Tree::Tree(const std::vector<Vec3d>& vertices, const std::vector<Triangle>& triangles)
@@ -68,6 +99,35 @@ Tree::Tree(const std::vector<Vec3d>& vertices, const std::vector<Triangle>& tria
         ranges.push_back({left + 1, half, to});
         ranges.push_back({left, from, half});
     }
+}
+
+double Tree::squared_distance(const Vec3d& point, double most) const {
+    if (nodes_.empty()) return most;
+    struct Waiting {
+        std::uint32_t node;
+        double distance;
+    };
+    Waiting stack[64];
+    std::size_t waiting = 0;
+    stack[waiting++] = {0, squared_distance_to(nodes_[0].box, point)};
+    while (waiting > 0) {
+        const Waiting next = stack[--waiting];
+        if (!(next.distance < most)) continue;
+        const Node& node = nodes_[next.node];
+        if (node.count == 0) {
+            const Waiting left{node.left, squared_distance_to(nodes_[node.left].box, point)};
+            const Waiting right{node.left + 1, squared_distance_to(nodes_[node.left + 1].box, point)};
+            const bool left_first = left.distance <= right.distance;
+            stack[waiting++] = left_first ? right : left;
+            stack[waiting++] = left_first ? left : right;
+            continue;
+        }
+        for (std::uint32_t i = 0; i < node.count; ++i) {
+            const Triangle& t = triangles_[order_[node.left + i]];
+            most = std::min(most, squared_distance_to(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]], point));
+        }
+    }
+    return most;
 }
 
 Box Tree::box_of(std::uint32_t triangle) const {

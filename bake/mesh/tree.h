@@ -1,4 +1,4 @@
-// A box tree over triangles: which of them are near a box or on a line, without looking at all.
+// A box tree over triangles: which of them are near a box, a point or on a line, without looking at all.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,9 @@ public:
     void on_ray(const Vec3d& origin, const Vec3d& direction, Visit visit) const {
         walk([&](const Box& b) { return meets_ray(b, origin, direction); }, visit);
     }
+
+    /// Squared distance from the point to the nearest triangle, or `most` if none is nearer than that.
+    double squared_distance(const Vec3d& point, double most) const;
 
     Box box_of(std::uint32_t triangle) const;
     /// All triangles, neighbours in space close together: walking them in this order keeps the caches warm.
