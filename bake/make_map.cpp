@@ -14,8 +14,8 @@ constexpr double amplitude_threshold = 2e-4;  ///< of the mean force on the whol
 constexpr double quantisation_budget = 2e-3;  ///< of the peak force
 
 /// One direction's series, [samples][regions][3], made periodic source by source and component by component; the means
-/// go to the map's place for this direction.
-Fluctuation add_direction(Map& map, std::size_t direction, const FlowSeries& flow, const BakePlan& plan, double speed) {
+/// go to the tables' place for this direction.
+Fluctuation add_direction(Tables& tables, std::size_t direction, const FlowSeries& flow, const BakePlan& plan, double speed) {
     const std::uint32_t regions = flow.regions;
     // The solver's interval is a whole number of its steps, so that a period is a whole number of intervals only
     // nearly.
@@ -30,7 +30,7 @@ Fluctuation add_direction(Map& map, std::size_t direction, const FlowSeries& flo
     Fluctuation out(std::size_t{regions} * plan.samples * Map::components);
     std::vector<float> signal(flow.samples);
     for (std::uint32_t l = 0; l < regions; ++l) {
-        SourceForce& mean = map.mean[direction * regions + l];
+        SourceForce& mean = tables.mean[direction * regions + l];
         for (std::uint32_t c = 0; c < Map::components; ++c) {
             const std::vector<float>& from = c < 3 ? flow.pressure : flow.friction;
             for (std::uint32_t s = 0; s < flow.samples; ++s)
@@ -87,14 +87,14 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
     const BakeOptions& options = plan.options;
     auto map = std::make_unique<Map>();
     fill_surface(*map, plan.surface, plan.regions);
-    map->directions = plan.directions;
+    map->directions = map->fluctuation_directions = plan.directions;
     map->samples = plan.samples;
 
-    map->mean.resize(results.size() * plan.regions.count);
-    std::vector<Fluctuation> fluctuations;
+    Tables tables;
+    tables.mean.resize(results.size() * plan.regions.count);
     double reynolds_solved = options.speed * plan.reference_length / options.viscosity;
     for (std::size_t d = 0; d < results.size(); ++d) {
-        fluctuations.push_back(add_direction(*map, d, results[d], plan, options.speed));
+        tables.fluctuation.push_back(add_direction(tables, d, results[d], plan, options.speed));
         report.directions.push_back(describe(results[d], plan.tasks[d].flow));
         reynolds_solved = std::min(reynolds_solved, results[d].plan.reynolds_solved);
     }
@@ -106,7 +106,8 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
     map->facts.reference_length = static_cast<float>(plan.reference_length);
     map->facts.reynolds = static_cast<float>(options.speed * plan.reference_length / options.viscosity);
     map->facts.reynolds_solved = std::min(map->facts.reynolds, static_cast<float>(reynolds_solved));
-    fill_fluctuations(*map, fluctuations, quantisation_budget);
+    map->speeds.assign(1, map->facts.base_speed);
+    fill_tables(*map, tables, quantisation_budget);
     map->provenance = provenance(plan, results, report);
     map->complete();
     return map;

@@ -59,6 +59,10 @@ nlohmann::ordered_json json_of(const frm_map_info& info) {
     j["content_hash"] = hash;
     j["sources"] = info.sources;
     j["directions"] = info.directions;
+    j["fluctuation_directions"] = info.fluctuation_directions;
+    j["speeds"] = info.speeds;
+    j["has_spin"] = info.has_spin != 0;
+    j["has_added_mass"] = info.has_added_mass != 0;
     j["samples"] = info.samples;
     j["triangles"] = info.triangles;
     j["period"] = info.period;
@@ -69,6 +73,9 @@ nlohmann::ordered_json json_of(const frm_map_info& info) {
     j["reynolds_solved"] = info.reynolds_solved;
     j["reference_length"] = info.reference_length;
     j["quantisation_error"] = info.quantisation_error;
+    j["direction_error_rms"] = info.direction_error_rms;
+    j["direction_error_worst"] = info.direction_error_worst;
+    j["uncertainty"] = info.uncertainty;
     j["area"] = info.area;
     j["volume"] = info.volume;
     j["centroid"] = json_of(info.centroid);

@@ -19,7 +19,10 @@ frm_world_def read_world(const JsonReader& j) {
              {{"default", FRM_MODEL_DEFAULT},
               {"paper", FRM_MODEL_PAPER},
               {"displacement", FRM_MODEL_DISPLACEMENT},
-              {"own_waves", FRM_MODEL_OWN_WAVES}});
+              {"own_waves", FRM_MODEL_OWN_WAVES},
+              {"fluctuation", FRM_MODEL_FLUCTUATION},
+              {"speeds", FRM_MODEL_SPEEDS},
+              {"spin", FRM_MODEL_SPIN}});
     j.choose("surface", def.surface, {{"flat", FRM_SURFACE_FLAT}, {"none", FRM_SURFACE_NONE}});
     j.read("gravity", def.gravity);
     j.read("density", def.density);

@@ -210,7 +210,7 @@ typedef struct frm_map_info {
     uint64_t file_bytes;
     uint64_t content_hash;    /* of the file's contents; equal hashes, equal maps */
     uint32_t sources;         /* haptic sources, one a region */
-    uint32_t directions;      /* of the uniform stream */
+    uint32_t directions;      /* of the uniform stream, for means */
     uint32_t samples;         /* of one period of the series */
     uint32_t triangles;       /* sample triangles of the surface */
     float period;             /* map time after which the series repeat, s */
@@ -220,13 +220,21 @@ typedef struct frm_map_info {
     float reynolds;           /* base_speed * reference_length / viscosity */
     float reynolds_solved;    /* at the viscosity that the solver's grid could carry; at most `reynolds` */
     float reference_length;   /* m; the square root of the projected area, mean over the directions */
-    float quantisation_error; /* largest error of a stored force, as a share of the peak force on the whole object */
+    float quantisation_error; /* largest error of the whole object's force by rounding, as a share of its peak */
     float area;               /* of the surface, m^2 */
     float volume;             /* m^3 */
     frm_vec3 centroid;        /* of the volume, in the body's frame */
     frm_vec3 bounds_low;      /* bounding box, in the body's frame */
     frm_vec3 bounds_high;
     uint32_t reserved;
+    uint32_t fluctuation_directions; /* of the uniform stream, for fluctuations */
+    uint32_t speeds;                 /* at which means are known, 1 to 16; fluctuations are of the base speed */
+    uint32_t has_spin;               /* 1: the map knows what turning in still water feels; see FRM_MODEL_SPIN */
+    uint32_t has_added_mass;         /* 1: frm_map_get_added_mass has an answer */
+    float direction_error_rms;   /* of the mean force in directions that the bake held out, as a share of the peak */
+    float direction_error_worst; /* force, and the worst of them; 0: not known */
+    float uncertainty;           /* standard error of the mean drag as a share of it, worst direction; 0: not known */
+    uint32_t reserved_2;
 } frm_map_info;
 
 /* One haptic source, in the body's frame at scale 1. */
@@ -257,10 +265,20 @@ FRM_API frm_status FRM_CALL frm_map_get_source(frm_map map, uint32_t index, frm_
  * frm_context_last_error. [owner] */
 FRM_API frm_status FRM_CALL frm_map_get_provenance(frm_map map, char *text, uint64_t capacity, uint64_t *size);
 
+/* The added mass of the object deep in the fluid: six rows of six numbers, force x, y, z and torque x, y, z about the
+ * body's origin (rows) for acceleration along x, y, z and angular acceleration about x, y, z (columns), in the body's
+ * frame: -matrix times acceleration is the fluid's force. Exactly symmetric. For a body of this scale (1e-3 to 1e3) in
+ * a fluid of this density (1e-3 to 1e5 kg/m^3): it goes with density and with scale^3 (kg), scale^4 (kg m) and
+ * scale^5 (kg m^2). A tick does not use it: it is for hosts that integrate, who add it to the body's own mass and
+ * leave it out in the part of the body that is dry. `matrix` takes 36 numbers. FRM_ERROR_STATE if the map was made
+ * without it (frm_map_info.has_added_mass). [owner] */
+FRM_API frm_status FRM_CALL frm_map_get_added_mass(frm_map map, float density, float scale, double *matrix);
+
 /* ---- World ---------------------------------------------------------------------------------------------------- */
 
-/* What of the paper's coupling of bodies and waves (section 6.3) is repaired; a sum. FRM_MODEL_PAPER repairs nothing
- * of it. The exact clip against the surface, means and fluctuations apart, and the open border are always there. */
+/* What of the paper's method is repaired, a sum: the coupling of bodies and waves (section 6.3), and what is felt of
+ * the map. FRM_MODEL_PAPER repairs nothing of it. The exact clip against the surface, means and fluctuations apart,
+ * and the open border are always there. */
 typedef enum frm_model {
     FRM_MODEL_PAPER = 0,
     /* Bodies push the water by the volume that they displace (conserves volume, leaves no current behind), instead
@@ -270,7 +288,16 @@ typedef enum frm_model {
     /* A body does not feel the part of the water's velocity that it made itself: the map's stream holds that flow
      * already. Without it, relative velocity and drag vanish where the body drags the water along. */
     FRM_MODEL_OWN_WAVES = 2,
-    FRM_MODEL_DEFAULT = 3
+    /* Between baked directions the fluctuation keeps its strength. Without it a part is lost, up to a third where the
+     * neighbours' fluctuations have nothing to do with each other: they are added as they come, and cancel. */
+    FRM_MODEL_FLUCTUATION = 4,
+    /* A map that knows means at several speeds gives those of the Reynolds number at hand (linear in its logarithm).
+     * Without it, and with one speed, those of the base speed at all speeds. */
+    FRM_MODEL_SPEEDS = 8,
+    /* A map with a spin table gives what turning in still water feels. Without it, and without a table, rotation is
+     * felt as each source's own local stream alone (section 8 of the paper names that as an approximation). */
+    FRM_MODEL_SPIN = 16,
+    FRM_MODEL_DEFAULT = 31
 } frm_model;
 
 /* Where the fluid ends, for a world without frm_water. */

@@ -1,5 +1,4 @@
-// From surfaces, regions and series to a Map: the sources, the means, and the fluctuations as whole multiples of a
-// step.
+// From surfaces, regions and what the flows gave to a Map: the sources, and the forces as whole multiples of steps.
 #pragma once
 
 #include <vector>
@@ -12,12 +11,26 @@ namespace frm::bake {
 /// Geometry and sources. The triangles are put in the order of their regions.
 void fill_surface(Map& map, const Surface& surface, const Regions& regions);
 
-/// The fluctuations of one direction, before they are rounded: [source][sample][component], N.
+/// The fluctuations of one direction about their mean: [source][sample][component], N.
 using Fluctuation = std::vector<float>;
 
-/// Rounds the fluctuations so that the whole force errs by about `budget` of its peak at most, and writes the largest
-/// error found to facts.quantisation_error. map.mean, sources, directions and samples must be there; one entry of
-/// `directions` each.
-void fill_fluctuations(Map& map, const std::vector<Fluctuation>& directions, double budget);
+/// The forces before they are rounded, as flows or a fit gave them, N, at the map's own size and fluid.
+struct Tables {
+    std::vector<SourceForce> mean;         ///< [speed][direction][source], each at its own speed (not the base speed)
+    std::vector<Fluctuation> fluctuation;  ///< [fluctuation direction], at the base speed
+};
+
+/// Rounds the tables into the map: means to `budget` / 3 and fluctuations to two thirds of it, as shares of the peak
+/// force on the whole object; friction's means to five times that share of friction's own peak, because they matter by
+/// themselves at low speed. The largest error found goes to facts.quantisation_error: at most `budget` (it holds for
+/// fluctuations whose largest value is below 32767 steps; what is larger gets a larger step). Budget: above 0, below 1.
+/// The map must have its sources, directions, fluctuation_directions, speeds, samples and facts.base_speed; the sizes
+/// of the tables must match (throws Error).
+void fill_tables(Map& map, const Tables& tables, double budget);
+
+/// The largest error of the force on the whole object that comes of the map's rounding, as a share of its peak in the
+/// tables: the worst mean, of all speeds and directions, plus the worst sample of a fluctuation. What fill_tables()
+/// writes, and what `frm verify --against` works out anew. Throws Error if the sizes do not match.
+double rounding_error(const Map& map, const Tables& tables);
 
 }  // namespace frm::bake

@@ -11,17 +11,25 @@ Map formula_map(const Surface& surface, std::uint32_t sources, std::uint32_t fre
     constexpr double pi = 3.14159265358979323846, density = 1000, speed = 0.5, viscosity = 1e-6;
     Map map;
     fill_surface(map, surface, split_regions(surface, sources));
-    map.directions = DirectionSet(frequency);
+    map.directions = map.fluctuation_directions = DirectionSet(frequency);
     map.samples = samples;
     const SurfaceProperties shape = measure(surface);
     const double size = std::cbrt(shape.volume), dynamic = 0.5 * density * speed * speed;
     const double reynolds = speed * size / viscosity;
-    map.facts = {static_cast<float>(speed),    static_cast<float>(20 * size / speed),
-                 static_cast<float>(density),  static_cast<float>(viscosity),
-                 static_cast<float>(size),     static_cast<float>(reynolds),
-                 static_cast<float>(reynolds), 0};
+    map.facts = {static_cast<float>(speed),
+                 static_cast<float>(20 * size / speed),
+                 static_cast<float>(density),
+                 static_cast<float>(viscosity),
+                 static_cast<float>(size),
+                 static_cast<float>(reynolds),
+                 static_cast<float>(reynolds),
+                 0,
+                 0,
+                 0,
+                 0};
+    map.speeds.assign(1, map.facts.base_speed);
 
-    std::vector<Fluctuation> fluctuations;
+    Tables tables;
     for (std::uint32_t d = 0; d < map.directions.count(); ++d) {
         const Vec3d e = map.directions.direction(d);
         Fluctuation f;
@@ -30,16 +38,16 @@ Map formula_map(const Surface& surface, std::uint32_t sources, std::uint32_t fre
             const double along = dot(n, e), area = static_cast<double>(source.area);
             const Vec3d pressure = n * (dynamic * area * along * along * (along < 0 ? -1.0 : 0.5));
             const Vec3d friction = e * (0.01 * dynamic * area);
-            map.mean.push_back({Vec3f(pressure), Vec3f(friction)});
+            tables.mean.push_back({Vec3f(pressure), Vec3f(friction)});
             for (std::uint32_t s = 0; s < samples; ++s) {
                 const double wave = 0.1 * std::sin(4 * pi * s / samples);
                 for (int c = 0; c < 3; ++c) f.push_back(static_cast<float>(wave * pressure[c]));
                 for (int c = 0; c < 3; ++c) f.push_back(static_cast<float>(wave * friction[c]));
             }
         }
-        fluctuations.push_back(std::move(f));
+        tables.fluctuation.push_back(std::move(f));
     }
-    fill_fluctuations(map, fluctuations, 1e-4);
+    fill_tables(map, tables, 1e-4);
     map.provenance = R"({"solver":"formula"})";
     map.complete();
     return map;

@@ -35,6 +35,8 @@ public:
     /// A vector in the body's frame.
     Vec3f body_in(const frm_vec3& v) const { return mirror(Vec3f(v.x, v.y, v.z)); }
     frm_vec3 body_out(const Vec3f& v) const { return plain(mirror(v)); }
+    /// An axial one: a torque or an angular velocity.
+    frm_vec3 body_axial_out(const Vec3f& v) const { return plain(mirror(v) * hand_); }
 
 private:
     static frm_vec3 plain(const Vec3f& v) { return {v.x, v.y, v.z}; }

@@ -82,7 +82,7 @@ frm_status FRM_CALL frm_map_get_info(frm_map map, frm_map_info* info) {
         require_out(info, "info");
         const Map& m = *object.map;
         frm_map_info out{};
-        out.format_version = map_format_version;
+        out.format_version = m.format_version;
         out.file_bytes = m.file.size();
         out.content_hash = m.content_hash;
         out.sources = m.source_count();
@@ -103,7 +103,47 @@ frm_status FRM_CALL frm_map_get_info(frm_map map, frm_map_info* info) {
         const frm_vec3 low = c.axes().body_out(m.shape.low), high = c.axes().body_out(m.shape.high);
         out.bounds_low = {std::fmin(low.x, high.x), std::fmin(low.y, high.y), std::fmin(low.z, high.z)};
         out.bounds_high = {std::fmax(low.x, high.x), std::fmax(low.y, high.y), std::fmax(low.z, high.z)};
+        out.fluctuation_directions = m.fluctuation_directions.count();
+        out.speeds = static_cast<std::uint32_t>(m.speeds.size());
+        out.has_spin = m.spin.rate > 0;
+        out.has_added_mass = m.has_added_mass;
+        out.direction_error_rms = m.facts.direction_error_rms;
+        out.direction_error_worst = m.facts.direction_error_worst;
+        out.uncertainty = m.facts.uncertainty;
         write_struct(info, out);
+    });
+}
+
+frm_status FRM_CALL frm_map_get_added_mass(frm_map map, float density, float scale, double* matrix) {
+    return with<MapObject>(map, [&](Context& c, MapObject& object) {
+        require_pointer(matrix, "matrix");
+        require_range(static_cast<double>(density), 1e-3f, 1e5, "density");
+        require_range(static_cast<double>(scale), 1e-3f, 1e3, "scale");
+        const Map& m = *object.map;
+        if (!m.has_added_mass) throw Error(FRM_ERROR_STATE, "the map was made without added mass");
+        // Each of the host's six axes is one of the map's, or its opposite.
+        std::size_t from[6];
+        double sign[6];
+        for (std::size_t i = 0; i < 6; ++i) {
+            Vec3f unit;
+            unit[static_cast<int>(i % 3)] = 1;
+            const frm_vec3 v = i < 3 ? c.axes().body_out(unit) : c.axes().body_axial_out(unit);
+            const float part[3] = {v.x, v.y, v.z};
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (part[k] == 0) continue;
+                from[i - i % 3 + k] = i;
+                sign[i - i % 3 + k] = static_cast<double>(part[k]);
+            }
+        }
+        const double s = static_cast<double>(scale),
+                     unit = static_cast<double>(density) / static_cast<double>(m.facts.density);
+        for (std::size_t i = 0; i < 6; ++i)
+            for (std::size_t j = 0; j < 6; ++j) {
+                double factor = unit * s * s * s;
+                if (i >= 3) factor *= s;
+                if (j >= 3) factor *= s;
+                matrix[6 * i + j] = sign[i] * sign[j] * factor * m.added_mass[6 * from[i] + from[j]];
+            }
     });
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/map/map.h"
 #include "core/math/quat.h"
+#include "core/model.h"
 #include "core/water/footprint.h"
 
 namespace frm {
@@ -89,11 +90,11 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
 /// `spread`, the wider the deeper. After measure_wet_surface, which turns the surface.
 void lay_displacement(Body& body, float level, bool spread);
 
-/// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). With
-/// `own_waves` the water's velocity is taken without what the body itself made. With `spread` the pressure reaches the
-/// surface the wider the deeper its source is.
-void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, bool own_waves,
-                        bool spread);
+/// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). `model` says by
+/// its bits: own_waves, that the water's velocity is taken without what the body itself made; displacement, that the
+/// pressure reaches the surface the wider the deeper its source is; fluctuation, speeds and spin, what of the map is
+/// used beyond the paper's.
+void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, std::uint32_t model);
 
 /// Weight, and the sum of the parts (Eq. 4).
 void sum_forces(Body& body, const Fluid& fluid);

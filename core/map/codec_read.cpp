@@ -25,6 +25,8 @@ struct Chunk {
 constexpr std::uint64_t max_raw_size = std::uint64_t{1} << 28;
 /// Of all directions together: 4 GiB in memory.
 constexpr std::uint64_t max_values = std::uint64_t{1} << 31;
+/// Numbers of all means together: 1 GiB in memory.
+constexpr std::uint64_t max_means = std::uint64_t{1} << 28;
 
 class Decoder {
 public:
@@ -43,9 +45,9 @@ private:
         const std::uint64_t file_size = reader_.left();
         if (file_size < format::header_bytes || std::memcmp(reader_.take(8), format::magic, 8) != 0)
             throw Error(FRM_ERROR_CORRUPT, "map: this is not a .frm file (its first bytes are not the format's)");
-        const std::uint32_t version = reader_.u32();
-        if (version != map_format_version)
-            throw Error(FRM_ERROR_VERSION, "map: format version %u; this library reads version %u", version,
+        version_ = reader_.u32();
+        if (version_ < 1 || version_ > map_format_version)
+            throw Error(FRM_ERROR_VERSION, "map: format version %u; this library reads versions 1 to %u", version_,
                         map_format_version);
         if (reader_.u32() != 0)
             throw Error(FRM_ERROR_VERSION, "map: the header has flags that this library does not know");
@@ -81,10 +83,18 @@ private:
             once(c, regions_), regions(c);
         else if (is("DIRS"))
             once(c, directions_), directions(c);
+        else if (is("SPED") && version_ >= 2)
+            once(c, speeds_), speeds(c);
+        else if (is("MEAN") && version_ == 1)
+            once(c, means_), means_of_version_1(c);
         else if (is("MEAN"))
-            once(c, means_), means(c);
+            means(c);
         else if (is("FLUC"))
             fluctuation(c);
+        else if (is("SPIN") && version_ >= 2)
+            once(c, spin_), spin(c);
+        else if (is("MASS") && version_ >= 2)
+            once(c, added_mass_), added_mass(c);
         else if (is("PROV"))
             once(c, provenance_), provenance(c);
         // Any other type comes from a later version that older readers may ignore.
@@ -114,13 +124,17 @@ private:
     }
 
     void facts(const Chunk& c) {
-        ByteReader r = open(c, 9 * 4);
+        ByteReader r = open(c, version_ == 1 ? 36 : 48);
         MapFacts& f = map_.facts;
         for (float* v : {&f.base_speed, &f.period, &f.density, &f.viscosity, &f.reference_length, &f.reynolds,
                          &f.reynolds_solved, &f.quantisation_error})
             *v = r.f32();
         map_.samples = r.u32();
         if (map_.samples == 0 || map_.samples > Map::max_samples) corrupt(c, "the number of samples is out of range");
+        if (version_ == 1)
+            map_.speeds.assign(1, f.base_speed);
+        else
+            for (float* v : {&f.direction_error_rms, &f.direction_error_worst, &f.uncertainty}) *v = r.f32();
     }
 
     void geometry(const Chunk& c) {
@@ -152,47 +166,136 @@ private:
         }
     }
 
+    DirectionSet frequency(const Chunk& c, std::uint32_t n) {
+        if (n == 0 || n > DirectionSet::max_frequency) corrupt(c, "the frequency is out of range");
+        return DirectionSet(n);
+    }
+
     void directions(const Chunk& c) {
-        if (c.raw_size < 8) corrupt(c, "is too short");
-        ByteReader r = open(c, c.raw_size);
-        const std::uint32_t frequency = r.u32(), count = r.u32();
-        if (frequency == 0 || frequency > DirectionSet::max_frequency) corrupt(c, "the frequency is out of range");
-        const DirectionSet set(frequency);
-        if (count != set.count()) corrupt(c, "the number of directions does not match the frequency");
-        if (c.raw_size != 8 + std::uint64_t{12} * count) corrupt(c, "its size does not match its count");
-        for (std::uint32_t i = 0; i < count; ++i) {
+        if (version_ == 1) {
+            if (c.raw_size < 8) corrupt(c, "is too short");
+            ByteReader r = open(c, c.raw_size);
+            map_.directions = map_.fluctuation_directions = frequency(c, r.u32());
+            directions_of_version_1(c, r);
+        } else {
+            ByteReader r = open(c, 8);
+            map_.directions = frequency(c, r.u32());
+            map_.fluctuation_directions = frequency(c, r.u32());
+        }
+        map_.step.assign(map_.fluctuation_directions.count(), 0.0f);
+        seen_.assign(map_.fluctuation_directions.count(), 0);
+    }
+
+    /// Version 1 has one set and its vectors, for convenience.
+    void directions_of_version_1(const Chunk& c, ByteReader& r) {
+        const DirectionSet& set = map_.directions;
+        if (r.u32() != set.count()) corrupt(c, "the number of directions does not match the frequency");
+        if (c.raw_size != 8 + std::uint64_t{12} * set.count()) corrupt(c, "its size does not match its count");
+        for (std::uint32_t i = 0; i < set.count(); ++i) {
             const Vec3f stored = r.vec3();
             const Vec3f expected(set.direction(i));
             const Vec3f d = stored - expected;
             if (!(dot(d, d) < 1e-10f)) corrupt(c, "a direction is not where the set has it");
         }
-        map_.directions = set;
-        map_.step.assign(count, 0.0f);
-        seen_.assign(count, 0);
     }
 
-    void means(const Chunk& c) {
+    void speeds(const Chunk& c) {
+        if (c.raw_size < 8 || c.raw_size > 4 + 4 * Map::max_speeds) corrupt(c, "the number of speeds is out of range");
+        ByteReader r = open(c, c.raw_size);
+        const std::uint64_t count = r.u32();
+        if (c.raw_size != 4 + 4 * count) corrupt(c, "its size does not match its count");
+        map_.speeds.resize(count);
+        for (float& u : map_.speeds) u = r.f32();
+        seen_speed_.assign(count, 0);
+    }
+
+    void read_plain(ByteReader& r, SourceForce* out, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            out[i].pressure = r.vec3();
+            out[i].friction = r.vec3();
+        }
+    }
+
+    void means_of_version_1(const Chunk& c) {
         needs(c, regions_ && directions_, "comes before REGN and DIRS");
         const std::uint64_t cells = std::uint64_t{map_.directions.count()} * map_.sources.size();
         ByteReader r = open(c, cells * 24);
         map_.mean.resize(cells);
-        for (SourceForce& f : map_.mean) {
-            f.pressure = r.vec3();
-            f.friction = r.vec3();
+        map_.mean_step.assign(1, {0, 0});
+        read_plain(r, map_.mean.data(), cells);
+    }
+
+    void means(const Chunk& c) {
+        needs(c, regions_ && directions_ && speeds_, "comes before REGN, DIRS or SPED");
+        if (c.index >= map_.speeds.size()) corrupt(c, "names a speed that is not there");
+        if (seen_speed_[c.index]) corrupt(c, "comes twice");
+        seen_speed_[c.index] = 1;
+        const std::size_t sources = map_.sources.size(), count = map_.directions.count(), cells = count * sources;
+        if (std::uint64_t{cells} * Map::components * map_.speeds.size() > max_means)
+            corrupt(c, "is one of a set that is too large");
+        const std::uint64_t plain = 8 + 24 * std::uint64_t{cells}, coded = 8 + 12 * std::uint64_t{cells};
+        ByteReader r = open(c, c.raw_size == plain ? plain : coded);
+        if (map_.mean.empty()) {
+            map_.mean.resize(map_.speeds.size() * cells);
+            map_.mean_step.assign(map_.speeds.size(), {0, 0});
+        }
+        const float pressure = r.f32(), friction = r.f32();
+        map_.mean_step[c.index] = {pressure, friction};
+        SourceForce* out = map_.mean.data() + c.index * cells;
+        if ((c.raw_size == plain) != (pressure == 0 && friction == 0)) corrupt(c, "its steps do not match its size");
+        if (c.raw_size == plain) return read_plain(r, out, cells);
+
+        if (known_.empty())
+            for (std::uint32_t d = 0; d < count; ++d) known_.push_back(map_.directions.earlier_neighbours(d));
+        const std::uint8_t* low = r.take(cells * Map::components);
+        const std::uint8_t* high = r.take(cells * Map::components);
+        std::pmr::vector<std::int16_t> values(count, raw_.get_allocator());
+        std::size_t at = 0;
+        for (std::size_t l = 0; l < sources; ++l) {
+            for (int k = 0; k < 6; ++k) {
+                for (std::size_t d = 0; d < count; ++d, ++at) {
+                    const auto code = static_cast<std::uint16_t>(low[at] | high[at] << 8);
+                    values[d] = static_cast<std::int16_t>(static_cast<std::uint16_t>(
+                        format::expected_mean(values.data(), known_[d]) + format::unfold(code)));
+                    SourceForce& f = out[d * sources + l];
+                    if (k < 3)
+                        f.pressure[k] = pressure * static_cast<float>(values[d]);
+                    else
+                        f.friction[k - 3] = friction * static_cast<float>(values[d]);
+                }
+            }
         }
     }
 
+    void spin(const Chunk& c) {
+        needs(c, regions_, "comes before REGN");
+        const std::size_t count = DirectionSet(1).count() * map_.sources.size();
+        ByteReader r = open(c, 16 + 24 * std::uint64_t{count});
+        map_.spin.rate = r.f32();
+        map_.spin.centre = r.vec3();
+        if (!(map_.spin.rate > 0)) corrupt(c, "the rate is not a positive number");
+        map_.spin.force.resize(count);
+        read_plain(r, map_.spin.force.data(), count);
+    }
+
+    void added_mass(const Chunk& c) {
+        ByteReader r = open(c, 21 * 8);
+        for (std::size_t i = 0; i < 6; ++i)
+            for (std::size_t j = i; j < 6; ++j) map_.added_mass[6 * i + j] = map_.added_mass[6 * j + i] = r.f64();
+        map_.has_added_mass = true;
+    }
+
     void fluctuation(const Chunk& c) {
-        needs(c, facts_ && geometry_ && regions_ && directions_ && means_,
+        needs(c, facts_ && geometry_ && regions_ && directions_ && !map_.mean.empty(),
               "comes before FACT, GEOM, REGN, DIRS or MEAN");
-        if (c.index >= map_.directions.count()) corrupt(c, "names a direction that is not there");
+        const std::uint32_t directions = map_.fluctuation_directions.count();
+        if (c.index >= directions) corrupt(c, "names a direction that is not there");
         if (seen_[c.index]) corrupt(c, "comes twice");
         const std::size_t sources = map_.sources.size(), samples = map_.samples, width = Map::components;
         const std::size_t count = sources * samples * width;
-        if (std::uint64_t{count} * map_.directions.count() > max_values)
-            corrupt(c, "is one of a set that is too large");
+        if (std::uint64_t{count} * directions > max_values) corrupt(c, "is one of a set that is too large");
         ByteReader r = open(c, 4 + 2 * std::uint64_t{count});
-        if (map_.fluctuation.empty()) map_.fluctuation.resize(map_.directions.count() * count);
+        if (map_.fluctuation.empty()) map_.fluctuation.resize(directions * count);
         map_.step[c.index] = r.f32();
         const std::uint8_t* low = r.take(count);
         const std::uint8_t* high = r.take(count);
@@ -202,9 +305,8 @@ private:
             for (std::size_t k = 0; k < width; ++k) {
                 std::uint16_t before = 0;
                 for (std::size_t s = 0; s < samples; ++s, ++at) {
-                    const auto folded = static_cast<std::uint16_t>(low[at] | high[at] << 8);
-                    const auto sign = static_cast<std::uint16_t>(folded & 1u ? 0xFFFFu : 0u);
-                    before = static_cast<std::uint16_t>(before + ((folded >> 1) ^ sign));
+                    const auto code = static_cast<std::uint16_t>(low[at] | high[at] << 8);
+                    before = static_cast<std::uint16_t>(before + format::unfold(code));
                     values[(l * samples + s) * width + k] = static_cast<std::int16_t>(before);
                 }
             }
@@ -227,17 +329,27 @@ private:
         have(geometry_, "GEOM");
         have(regions_, "REGN");
         have(directions_, "DIRS");
-        have(means_, "MEAN");
-        for (std::uint32_t d = 0; d < map_.directions.count(); ++d)
+        if (version_ == 1) {
+            have(means_, "MEAN");
+        } else {
+            have(speeds_, "SPED");
+            for (std::uint32_t k = 0; k < map_.speeds.size(); ++k)
+                if (!seen_speed_[k]) throw Error(FRM_ERROR_CORRUPT, "map: chunk MEAN %u is missing", k);
+        }
+        for (std::uint32_t d = 0; d < map_.fluctuation_directions.count(); ++d)
             if (!seen_[d]) throw Error(FRM_ERROR_CORRUPT, "map: chunk FLUC %u is missing", d);
         map_.complete();
+        map_.format_version = version_;
     }
 
     Map& map_;
+    std::uint32_t version_ = 0;
     std::pmr::vector<std::uint8_t> raw_;
-    std::vector<std::uint8_t> seen_;
+    std::vector<std::uint8_t> seen_, seen_speed_;  ///< of the directions of FLUC, of the speeds of MEAN
+    std::vector<Neighbours> known_;
     ByteReader reader_;
     bool facts_ = false, geometry_ = false, regions_ = false, directions_ = false, means_ = false, provenance_ = false;
+    bool speeds_ = false, spin_ = false, added_mass_ = false;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include <zstd.h>
 
+#include <cmath>
+
 #include "core/map/bytes.h"
 #include "core/map/codec.h"
 #include "core/math/hash.h"
@@ -42,6 +44,7 @@ Bytes facts_chunk(const Map& map) {
                           f.reynolds_solved, f.quantisation_error})
         w.f32(v);
     w.u32(map.samples);
+    for (const float v : {f.direction_error_rms, f.direction_error_worst, f.uncertainty}) w.f32(v);
     return raw;
 }
 
@@ -73,18 +76,76 @@ Bytes directions_chunk(const Map& map) {
     Bytes raw;
     ByteWriter<Bytes> w(raw);
     w.u32(map.directions.frequency());
-    w.u32(map.directions.count());
-    for (std::uint32_t i = 0; i < map.directions.count(); ++i) w.vec3(Vec3f(map.directions.direction(i)));
+    w.u32(map.fluctuation_directions.frequency());
     return raw;
 }
 
-Bytes means_chunk(const Map& map) {
+Bytes speeds_chunk(const Map& map) {
     Bytes raw;
     ByteWriter<Bytes> w(raw);
-    for (const SourceForce& f : map.mean) {
+    w.u32(static_cast<std::uint32_t>(map.speeds.size()));
+    for (const float u : map.speeds) w.f32(u);
+    return raw;
+}
+
+void write_planes(ByteWriter<Bytes>& w, const std::vector<std::uint16_t>& codes) {
+    for (const std::uint16_t v : codes) w.u8(static_cast<std::uint8_t>(v));
+    for (const std::uint16_t v : codes) w.u8(static_cast<std::uint8_t>(v >> 8));
+}
+
+// Differences from what the neighbouring directions lead one to expect.
+Bytes means_chunk(const Map& map, std::size_t speed) {
+    Bytes raw;
+    ByteWriter<Bytes> w(raw);
+    const std::size_t sources = map.sources.size(), count = map.directions.count();
+    const SourceForce* mean = map.mean.data() + speed * count * sources;
+    const std::array<float, 2> step = map.mean_step[speed];
+    w.f32(step[0]);
+    w.f32(step[1]);
+    if (!(step[0] > 0 && step[1] > 0)) {
+        for (std::size_t i = 0; i < count * sources; ++i) {
+            w.vec3(mean[i].pressure);
+            w.vec3(mean[i].friction);
+        }
+        return raw;
+    }
+    std::vector<Neighbours> known;
+    for (std::uint32_t d = 0; d < count; ++d) known.push_back(map.directions.earlier_neighbours(d));
+    std::vector<std::int16_t> values(count);
+    std::vector<std::uint16_t> codes;
+    codes.reserve(count * sources * Map::components);
+    for (std::size_t l = 0; l < sources; ++l) {
+        for (int c = 0; c < 6; ++c) {
+            for (std::size_t d = 0; d < count; ++d) {
+                const SourceForce& f = mean[d * sources + l];
+                values[d] = static_cast<std::int16_t>(
+                    std::lround(c < 3 ? f.pressure[c] / step[0] : f.friction[c - 3] / step[1]));
+                codes.push_back(format::fold(
+                    static_cast<std::uint16_t>(values[d] - format::expected_mean(values.data(), known[d]))));
+            }
+        }
+    }
+    write_planes(w, codes);
+    return raw;
+}
+
+Bytes spin_chunk(const Map& map) {
+    Bytes raw;
+    ByteWriter<Bytes> w(raw);
+    w.f32(map.spin.rate);
+    w.vec3(map.spin.centre);
+    for (const SourceForce& f : map.spin.force) {
         w.vec3(f.pressure);
         w.vec3(f.friction);
     }
+    return raw;
+}
+
+Bytes added_mass_chunk(const Map& map) {
+    Bytes raw;
+    ByteWriter<Bytes> w(raw);
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = i; j < 6; ++j) w.f64(map.added_mass[6 * i + j]);
     return raw;
 }
 
@@ -104,15 +165,12 @@ Bytes fluctuation_chunk(const Map& map, std::uint32_t direction) {
             std::uint16_t before = 0;
             for (std::size_t s = 0; s < samples; ++s) {
                 const auto now = static_cast<std::uint16_t>(values[(l * samples + s) * width + c]);
-                const auto difference = static_cast<std::uint16_t>(now - before);
-                const auto sign = static_cast<std::uint16_t>(difference & 0x8000u ? 0xFFFFu : 0u);
-                folded.push_back(static_cast<std::uint16_t>((difference << 1) ^ sign));
+                folded.push_back(format::fold(static_cast<std::uint16_t>(now - before)));
                 before = now;
             }
         }
     }
-    for (const std::uint16_t v : folded) w.u8(static_cast<std::uint8_t>(v));
-    for (const std::uint16_t v : folded) w.u8(static_cast<std::uint8_t>(v >> 8));
+    write_planes(w, folded);
     return raw;
 }
 
@@ -120,13 +178,21 @@ Bytes fluctuation_chunk(const Map& map, std::uint32_t direction) {
 
 std::vector<std::uint8_t> encode_map(const Map& map) {
     Bytes body;
-    append_chunk(body, "FACT", 0, facts_chunk(map));
-    append_chunk(body, "GEOM", 0, geometry_chunk(map));
-    append_chunk(body, "REGN", 0, regions_chunk(map));
-    append_chunk(body, "DIRS", 0, directions_chunk(map));
-    append_chunk(body, "MEAN", 0, means_chunk(map));
-    for (std::uint32_t d = 0; d < map.directions.count(); ++d) append_chunk(body, "FLUC", d, fluctuation_chunk(map, d));
-    append_chunk(body, "PROV", 0, Bytes(map.provenance.begin(), map.provenance.end()));
+    std::uint32_t chunks = 0;
+    const auto append = [&](const char(&type)[5], std::uint32_t index, const Bytes& raw) {
+        append_chunk(body, type, index, raw);
+        ++chunks;
+    };
+    append("FACT", 0, facts_chunk(map));
+    append("GEOM", 0, geometry_chunk(map));
+    append("REGN", 0, regions_chunk(map));
+    append("DIRS", 0, directions_chunk(map));
+    append("SPED", 0, speeds_chunk(map));
+    for (std::uint32_t k = 0; k < map.speeds.size(); ++k) append("MEAN", k, means_chunk(map, k));
+    for (std::uint32_t d = 0; d < map.fluctuation_directions.count(); ++d) append("FLUC", d, fluctuation_chunk(map, d));
+    if (map.spin.rate > 0) append("SPIN", 0, spin_chunk(map));
+    if (map.has_added_mass) append("MASS", 0, added_mass_chunk(map));
+    append("PROV", 0, Bytes(map.provenance.begin(), map.provenance.end()));
 
     Bytes file;
     ByteWriter<Bytes> w(file);
@@ -135,7 +201,7 @@ std::vector<std::uint8_t> encode_map(const Map& map) {
     w.u32(0);
     w.u64(fnv1a(body.data(), body.size()));
     w.u64(format::header_bytes + body.size());
-    w.u32(6 + map.directions.count());
+    w.u32(chunks);
     w.u32(0);
     w.bytes(body.data(), body.size());
     return file;

@@ -23,7 +23,7 @@ std::uint32_t DirectionSet::index_of(std::int32_t i, std::int32_t j, std::int32_
     return static_cast<std::uint32_t>(before + in_row);
 }
 
-Vec3d DirectionSet::direction(std::uint32_t index) const {
+std::array<std::int32_t, 3> DirectionSet::point(std::uint32_t index) const {
     std::uint32_t at = 0;
     for (std::int32_t i = -n_; i <= n_; ++i) {
         const std::int32_t m = n_ - std::abs(i);
@@ -35,14 +35,50 @@ Vec3d DirectionSet::direction(std::uint32_t index) const {
         for (std::int32_t j = -m; j <= m; ++j) {
             const std::int32_t k = m - std::abs(j);
             const std::uint32_t here = k == 0 ? 1u : 2u;
-            if (index < at + here) {
-                const Vec3d p(i, j, index == at && k != 0 ? -k : k);
-                return p / length(p);
-            }
+            if (index < at + here) return {i, j, index == at && k != 0 ? -k : k};
             at += here;
         }
     }
     return {0, 0, 0};
+}
+
+Vec3d DirectionSet::direction(std::uint32_t index) const {
+    const auto [i, j, k] = point(index);
+    const Vec3d p(i, j, k);
+    return p / length(p);
+}
+
+Neighbours DirectionSet::earlier_neighbours(std::uint32_t index) const {
+    const auto here = point(index);
+    Neighbours out;
+    for (std::size_t same = 0; same < 3; ++same) {
+        for (int signs = 0; signs < 4; ++signs) {
+            auto p = here;
+            p[(same + 1) % 3] += signs & 1 ? 1 : -1;
+            p[(same + 2) % 3] += signs & 2 ? 1 : -1;
+            if (std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]) != n_) continue;
+            const std::uint32_t found = index_of(p[0], p[1], p[2]);
+            if (found < index) out.index[out.count++] = found;
+        }
+    }
+    return out;
+}
+
+// Faces by octant (bits: x, y, z negative), then row i, then j; where both are, the one with its corner (i, j, k) inwards
+// before the one with its edge. Rows have 2 (n - i) - 1 faces, so that i (2 n - i) are before row i.
+std::array<std::uint32_t, 3> DirectionSet::corners(std::uint32_t face) const {
+    const auto in_octant = static_cast<std::uint32_t>(n_ * n_);
+    const std::uint32_t octant = face / in_octant;
+    auto rest = static_cast<std::int32_t>(face % in_octant);
+    std::int32_t i = 0;
+    while (rest >= 2 * (n_ - i) - 1) rest -= 2 * (n_ - i++) - 1;
+    const std::int32_t j = rest / 2;
+    const bool edge = rest % 2 != 0;
+    const std::int32_t k = n_ - i - j - (edge ? 2 : 1);
+    const std::int32_t sx = octant & 4 ? -1 : 1, sy = octant & 2 ? -1 : 1, sz = octant & 1 ? -1 : 1;
+    const auto at = [&](std::int32_t p, std::int32_t q, std::int32_t r) { return index_of(sx * p, sy * q, sz * r); };
+    if (edge) return {at(i, j + 1, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k)};
+    return {at(i + 1, j, k), at(i, j + 1, k), at(i, j, k + 1)};
 }
 
 DirectionWeights DirectionSet::interpolate(const Vec3f& d) const {
@@ -64,16 +100,21 @@ DirectionWeights DirectionSet::interpolate(const Vec3f& d) const {
     const std::int32_t sx = d.x < 0 ? -1 : 1, sy = d.y < 0 ? -1 : 1, sz = d.z < 0 ? -1 : 1;
     const auto at = [&](std::int32_t p, std::int32_t q, std::int32_t r) { return index_of(sx * p, sy * q, sz * r); };
 
+    const std::int32_t octant = (sx < 0 ? 4 : 0) + (sy < 0 ? 2 : 0) + (sz < 0 ? 1 : 0);
+    const auto face = static_cast<std::uint32_t>(octant * n_ * n_ + i * (2 * n_ - i) + 2 * j);
+
     DirectionWeights out{};
     switch (c_room - k) {
         case 0:
-            out = {{at(i, j, k), at(i, j, k), at(i, j, k)}, {1, 0, 0}};
+            out = {{at(i, j, k), at(i, j, k), at(i, j, k)}, {1, 0, 0}, 0};
             break;
         case 1:
-            out = {{at(i + 1, j, k), at(i, j + 1, k), at(i, j, k + 1)}, {fa, fb, 1 - fa - fb}};
+            out = {{at(i + 1, j, k), at(i, j + 1, k), at(i, j, k + 1)}, {fa, fb, 1 - fa - fb}, face};
             break;
         default:
-            out = {{at(i, j + 1, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k)}, {1 - fa, 1 - fb, fa + fb - 1}};
+            out = {{at(i, j + 1, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k)},
+                   {1 - fa, 1 - fb, fa + fb - 1},
+                   face + 1};
             break;
     }
     // Rounding can leave the third weight a little below zero.

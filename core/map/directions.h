@@ -3,6 +3,7 @@
 // are found without a search.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/math/vec.h"
@@ -12,6 +13,13 @@ namespace frm {
 struct DirectionWeights {
     std::uint32_t index[3];
     float weight[3];  ///< not negative; their sum is 1
+    /// Whose corners the three are, in this order; any face where one weight is 1 and the direction the set's own.
+    std::uint32_t face;
+};
+
+struct Neighbours {
+    std::uint32_t count = 0;
+    std::uint32_t index[6];
 };
 
 /// A direction set of frequency n, 1 to 64. Order of the directions: i from -n to n, then j, then k, each ascending.
@@ -29,7 +37,16 @@ public:
     /// zero; its length does not matter.
     DirectionWeights interpolate(const Vec3f& d) const;
 
+    /// Those of a direction's neighbours on the lattice that have a smaller index: points that differ from it by one in
+    /// exactly two coordinates.
+    Neighbours earlier_neighbours(std::uint32_t index) const;
+
+    /// Triangles of neighbouring directions that cover the octahedron.
+    std::uint32_t faces() const { return static_cast<std::uint32_t>(8 * n_ * n_); }
+    std::array<std::uint32_t, 3> corners(std::uint32_t face) const;
+
 private:
+    std::array<std::int32_t, 3> point(std::uint32_t index) const;
     std::uint32_t index_of(std::int32_t i, std::int32_t j, std::int32_t k) const;
 
     std::int32_t n_;

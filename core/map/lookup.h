@@ -1,7 +1,10 @@
-// R_p(l, e, s) and R_f(l, e, s) of Eq. 6: the force on one source, interpolated in direction and map time.
+// R_p(l, e, s) and R_f(l, e, s) of Eq. 6: the force on one source, interpolated in direction, speed and map time.
 #pragma once
 
+#include <cmath>
+
 #include "core/map/map.h"
+#include "core/math/logarithm.h"
 
 namespace frm {
 
@@ -19,23 +22,136 @@ inline SamplePosition sample_position(const Map& map, float time) {
     return {before, before + 1 == map.samples ? 0 : before + 1, position - static_cast<float>(before)};
 }
 
-/// Mean and fluctuation are interpolated apart, each over the three directions around `e`.
-inline SourceForce look_up(const Map& map, std::uint32_t source, const DirectionWeights& e, const SamplePosition& s) {
+/// Two of the map's speeds and how far between them a speed lies.
+struct SpeedPosition {
+    std::uint32_t before = 0, after = 0;
+    float share = 0;
+};
+
+/// Linear in the logarithm of the Reynolds number, the nearest speed's outside. `speed` is of the map's own size and
+/// fluid: the one that has the Reynolds number wanted.
+inline SpeedPosition speed_position(const Map& map, float speed) {
+    const auto last = static_cast<std::uint32_t>(map.speeds.size() - 1);
+    if (last == 0 || !(speed > map.speeds[0])) return {0, 0, 0};
+    if (speed >= map.speeds[last]) return {last, last, 0};
+    std::uint32_t k = 0;
+    while (speed >= map.speeds[k + 1]) ++k;
+    const float share = (logarithm(speed) - map.log_speed[k]) / (map.log_speed[k + 1] - map.log_speed[k]);
+    // Two speeds may have one logarithm; rounding may leave the interval.
+    return {k, k + 1, share > 0 ? (share < 1 ? share : 1.0f) : 0.0f};
+}
+
+/// By what a blend of three fluctuations is multiplied to be as strong as the three are: of series that are not in
+/// phase a part cancels. 1 at the set's own directions; at most 2, because what nearly vanishes has no shape worth
+/// enlarging.
+inline float fluctuation_level(const Map& map, const DirectionWeights& e) {
+    const FaceLevel& face = map.levels[e.face];
+    const float* w = e.weight;
+    const float a = w[0] * face.rms[0], b = w[1] * face.rms[1], c = w[2] * face.rms[2];
+    const float wanted = a + b + c;
+    const float crossed = w[1] * w[2] * face.product[0] + w[2] * w[0] * face.product[1] + w[0] * w[1] * face.product[2];
+    const float found = a * a + b * b + c * c + 2 * crossed;  // squared
+    if (!(found < wanted * wanted)) return 1;
+    if (!(found > 0.25f * wanted * wanted)) return 2;
+    return wanted / std::sqrt(found);
+}
+
+/// Where in the map a stream lies.
+struct MapPlace {
+    DirectionWeights mean, fluctuation;
+    float level = 1;  ///< of the fluctuation
+    SpeedPosition speed;
+};
+
+/// `direction` (not zero) is where the water goes relative to the source, body frame; its length does not matter.
+inline MapPlace place_of(const Map& map, const Vec3f& direction, const SpeedPosition& speed, bool repair_level) {
+    MapPlace place;
+    place.mean = map.directions.interpolate(direction);
+    place.fluctuation = map.one_direction_set() ? place.mean : map.fluctuation_directions.interpolate(direction);
+    if (repair_level) place.level = fluctuation_level(map, place.fluctuation);
+    place.speed = speed;
+    return place;
+}
+
+namespace detail {
+
+inline void add_mean(const Map& map, std::uint32_t source, std::uint32_t direction, const SpeedPosition& speed,
+                     float (&values)[Map::components]) {
+    const std::size_t count = map.sources.size(), cells = map.directions.count() * count;
+    const SourceForce* at = map.mean.data() + direction * count + source;
+    const SourceForce& a = at[speed.before * cells];
+    for (int c = 0; c < 3; ++c) values[c] = a.pressure[c], values[c + 3] = a.friction[c];
+    if (!(speed.share > 0)) return;
+    const SourceForce& b = at[speed.after * cells];
+    for (int c = 0; c < 3; ++c) {
+        values[c] += speed.share * (b.pressure[c] - a.pressure[c]);
+        values[c + 3] += speed.share * (b.friction[c] - a.friction[c]);
+    }
+}
+
+inline void add_fluctuation(const Map& map, std::uint32_t source, std::uint32_t direction, const SamplePosition& s,
+                            float level, float (&values)[Map::components]) {
+    const std::size_t row = (std::size_t{direction} * map.sources.size() + source) * map.samples;
+    const std::int16_t* a = map.fluctuation.data() + (row + s.before) * Map::components;
+    const std::int16_t* b = map.fluctuation.data() + (row + s.after) * Map::components;
+    const float step = level * map.step[direction];
+    for (int c = 0; c < 6; ++c) {
+        const float first = static_cast<float>(a[c]);
+        values[c] += step * (first + s.share * (static_cast<float>(b[c]) - first));
+    }
+}
+
+}  // namespace detail
+
+/// Mean and fluctuation are interpolated apart, each over the three directions of its own set around the stream; in one
+/// pass where they share the set.
+inline SourceForce look_up(const Map& map, std::uint32_t source, const MapPlace& place, const SamplePosition& s) {
     float sum[Map::components] = {};
+    const bool one_set = map.one_direction_set();
     for (int k = 0; k < 3; ++k) {
-        const std::size_t cell = std::size_t{e.index[k]} * map.sources.size() + source;
-        const SourceForce& mean = map.mean[cell];
-        const std::int16_t* series = map.fluctuation.data() + cell * map.samples * Map::components;
-        const std::int16_t* a = series + std::size_t{s.before} * Map::components;
-        const std::int16_t* b = series + std::size_t{s.after} * Map::components;
-        const float weight = e.weight[k], step = map.step[e.index[k]];
-        for (int c = 0; c < 6; ++c) {
-            const float steady = c < 3 ? mean.pressure[c] : mean.friction[c - 3];
-            const float first = static_cast<float>(a[c]);
-            sum[c] += weight * (steady + step * (first + s.share * (static_cast<float>(b[c]) - first)));
-        }
+        float values[Map::components];
+        detail::add_mean(map, source, place.mean.index[k], place.speed, values);
+        if (one_set) detail::add_fluctuation(map, source, place.fluctuation.index[k], s, place.level, values);
+        for (int c = 0; c < 6; ++c) sum[c] += place.mean.weight[k] * values[c];
+    }
+    for (int k = 0; !one_set && k < 3; ++k) {
+        float values[Map::components] = {};
+        detail::add_fluctuation(map, source, place.fluctuation.index[k], s, place.level, values);
+        for (int c = 0; c < 6; ++c) sum[c] += place.fluctuation.weight[k] * values[c];
     }
     return {{sum[0], sum[1], sum[2]}, {sum[3], sum[4], sum[5]}};
+}
+
+/// The mean force of a stream (m/s, body frame, where the water goes relative to the source) on a source, N, at the
+/// map's own size and fluid: Eq. 6 without its fluctuation. No speed, no force.
+inline SourceForce mean_force(const Map& map, std::uint32_t source, const Vec3f& stream) {
+    const float speed = length(stream);
+    if (!(speed > 0)) return {};
+    const DirectionWeights e = map.directions.interpolate(stream);
+    const SpeedPosition at = speed_position(map, speed);
+    SourceForce out;
+    for (int k = 0; k < 3; ++k) {
+        float values[Map::components];
+        detail::add_mean(map, source, e.index[k], at, values);
+        for (int c = 0; c < 3; ++c) {
+            out.pressure[c] += e.weight[k] * values[c];
+            out.friction[c] += e.weight[k] * values[c + 3];
+        }
+    }
+    const float ratio = speed / map.facts.base_speed;
+    return {out.pressure * (ratio * ratio), out.friction * ratio};
+}
+
+/// What spin adds to a source, N, at spin.rate and the map's own size and fluid; `e` is of DirectionSet(1) around the
+/// angular velocity. The map must have the table.
+inline SourceForce spin_force(const Map& map, std::uint32_t source, const DirectionWeights& e) {
+    SourceForce sum;
+    for (int k = 0; k < 3; ++k) {
+        const SourceForce& f = map.spin.force[e.index[k] * map.sources.size() + source];
+        sum.pressure += f.pressure * e.weight[k];
+        sum.friction += f.friction * e.weight[k];
+    }
+    return sum;
 }
 
 }  // namespace frm

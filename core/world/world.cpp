@@ -113,7 +113,7 @@ bool World::tick(float dt) {
     }
 
     bool diverged = false;
-    const bool own_waves = (def_.model & model_own_waves) != 0, spread = (def_.model & model_displacement) != 0;
+    const bool spread = (def_.model & model_displacement) != 0;
     for (const auto& body : bodies_) {
         const SurfaceView view = view_from(*body);
         if (body->footprint) {
@@ -124,7 +124,7 @@ bool World::tick(float dt) {
         }
         measure_wet_surface(*body, view, def_.fluid);
         if (body->footprint) lay_displacement(*body, view.level, spread);
-        look_up_resistance(*body, view, def_.fluid, dt, own_waves, spread);
+        look_up_resistance(*body, view, def_.fluid, dt, def_.model);
         sum_forces(*body, def_.fluid);
         if (!body->water_finite || !finite(body->forces)) {
             forget_forces(*body);

@@ -11,10 +11,8 @@
 
 namespace frm {
 
-enum Model : std::uint32_t { model_paper = 0, model_displacement = 1, model_own_waves = 2 };
-
 struct WorldDef {
-    std::uint32_t model = model_displacement | model_own_waves;
+    std::uint32_t model = model_default;
     bool everywhere = false;  ///< fluid without a surface
     double level = 0;         ///< of the calm surface, m
     Fluid fluid;

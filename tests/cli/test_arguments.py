@@ -10,7 +10,7 @@ OPTIONS = {
              "--resolution", "--threads", "--density", "--viscosity", "--json"],
     "mesh": ["MESH", "--out", "--json"],
     "info": ["FILE", "--json"],
-    "verify": ["FILE", "--json"],
+    "verify": ["FILE", "--json", "--against"],
     "flow": ["MESH", "--direction", "--speed", "--viscosity", "--density", "--section", "--length",
              "--resolution", "--duration", "--confidence PERCENT", "--seconds", "--spin", "--slab", "--turn DEGREES",
              "--no-grid-error", "--memory GIB", "--report DIR", "--out", "--json"],

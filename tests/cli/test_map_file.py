@@ -1,5 +1,7 @@
 """frm info, verify and force on a map made from a formula."""
 import math
+import struct
+import subprocess
 
 import pytest
 
@@ -28,6 +30,59 @@ def test_verify(good, map_path):
     j = good("verify", "--json", map_path).json
     assert j["sound"] is True and j["kind"] == "map" and j["file"] == str(map_path)
     assert "sound" in good("verify", map_path).out
+
+
+@pytest.fixture
+def full(map_path):
+    """A map with all that a map can have; its unrounded tables beside it."""
+    return map_path.parent / "full_map.frm"
+
+
+def test_info_of_a_full_map(good, full):
+    j = good("info", "--json", full).json
+    assert (j["format_version"], j["directions"], j["fluctuation_directions"], j["speeds"]) == (2, 38, 18, 3)
+    assert j["has_spin"] is True and j["has_added_mass"] is True
+    assert j["direction_error_rms"] == pytest.approx(0.02) and j["direction_error_worst"] == pytest.approx(0.07)
+    assert j["uncertainty"] == pytest.approx(0.015) and 0 < j["quantisation_error"] <= 3e-3
+    text = good("info", full).out
+    for words in ("38 for means, 18 for fluctuations", "means at 3 speeds", "2 % of the peak", "7 % of the peak",
+                  "1.5 % of the mean drag"):
+        assert words in text
+
+
+def test_verify_against_the_unrounded_tables(good, refused, full, map_path, tmp_path):
+    raw = full.with_suffix(".frmraw")
+    j = good("verify", full, "--against", raw, "--json").json
+    stated = good("info", "--json", full).json["quantisation_error"]
+    assert j["quantisation_error_stated"] == pytest.approx(stated)
+    assert 0 < j["quantisation_error"] <= stated * (1 + 1e-6) and j["raw_bytes"] == raw.stat().st_size
+    assert "as stated" in good("verify", full, "--against", raw).out
+    refused(1, "full_map.frmraw|another map", "verify", map_path, "--against", raw)
+    refused(1, "no.frmraw|cannot be read", "verify", full, "--against", tmp_path / "no.frmraw")
+    refused(1, "full_map.frm|not a .frmraw", "verify", full, "--against", full)
+    refused(1, "damaged.frm", "verify", full, "--against", damaged(raw, tmp_path, raw.stat().st_size // 2))
+
+
+def test_a_map_that_states_too_small_an_error_is_found_out(refused, full, tmp_path):
+    data = bytearray(full.read_bytes())
+    at = 40  # the first chunk is FACT; one that states a millionth of the error takes its place
+    kind, index, raw_size, stored, _ = struct.unpack_from("<4sIQQQ", data, at)
+    assert kind == b"FACT"
+    frame = bytes(data[at + 32:at + 32 + stored])
+    facts = bytearray(subprocess.run(["zstd", "-dc"], input=frame, stdout=subprocess.PIPE, check=True).stdout)
+    struct.pack_into("<f", facts, 28, 1e-6)
+    path = tmp_path / "facts"
+    path.write_bytes(facts)
+    frame = subprocess.run(["zstd", "-c", str(path)], stdout=subprocess.PIPE, check=True).stdout
+    body = struct.pack("<4sIQQQ", kind, index, raw_size, len(frame), 0) + frame + bytes(data[at + 32 + stored:])
+    h = 14695981039346656037
+    for byte in body:
+        h = (h ^ byte) * 1099511628211 & 0xFFFFFFFFFFFFFFFF
+    head = data[:16] + struct.pack("<QQ", h, 40 + len(body)) + data[32:40]
+    liar = tmp_path / "liar.frm"
+    liar.write_bytes(head + body)
+    line = refused(1, "liar.frm|states 0.0001 %", "verify", liar, "--against", full.with_suffix(".frmraw"))
+    assert "peak force" in line
 
 
 @pytest.mark.parametrize("command", [["verify"], ["verify", "--json"], ["info"], ["force", "--velocity", "1,0,0"]])

@@ -95,3 +95,40 @@ TEST_CASE("a smooth function is interpolated to second order", "[directions]") {
     CHECK(coarse < 0.035);
     CHECK(coarse / fine > 3.4);
 }
+
+TEST_CASE("the face of an interpolation has its three directions as corners, in their order", "[directions]") {
+    std::mt19937 random(3);
+    for (const std::uint32_t n : {1u, 2u, 5u, 10u}) {
+        const DirectionSet set(n);
+        std::set<std::uint32_t> seen;
+        for (int i = 0; i < 40000; ++i) {
+            const DirectionWeights w = set.interpolate(random_direction(random));
+            REQUIRE(w.face < set.faces());
+            const auto corner = set.corners(w.face);
+            if (w.weight[0] == 1) continue;
+            for (std::size_t k = 0; k < 3; ++k) REQUIRE(corner[k] == w.index[k]);
+            seen.insert(w.face);
+        }
+        CHECK(seen.size() == set.faces());
+    }
+}
+
+TEST_CASE("earlier neighbours are next on the lattice, and each edge is one's once", "[directions]") {
+    for (const std::uint32_t n : {1u, 2u, 3u, 8u}) {
+        const DirectionSet set(n);
+        std::set<std::pair<std::uint32_t, std::uint32_t>> found, edges;
+        for (std::uint32_t d = 0; d < set.count(); ++d) {
+            const Neighbours near = set.earlier_neighbours(d);
+            for (std::uint32_t k = 0; k < near.count; ++k) {
+                REQUIRE(near.index[k] < d);
+                REQUIRE(found.emplace(near.index[k], d).second);
+            }
+        }
+        for (std::uint32_t f = 0; f < set.faces(); ++f) {
+            const auto c = set.corners(f);
+            for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(c[k], c[(k + 1) % 3]));
+        }
+        CHECK(found == edges);
+        CHECK(edges.size() == 12 * n * n);  // Euler: V - E + F = 2
+    }
+}

@@ -3,6 +3,7 @@
 
 #include "core/math/exponential.h"
 #include "core/math/hash.h"
+#include "core/math/logarithm.h"
 #include "core/math/quat.h"
 #include "tests/support/catch.h"
 
@@ -19,6 +20,27 @@ TEST_CASE("exponential agrees with the standard library", "[math]") {
     CHECK(exponential(0) == 1);
     CHECK(exponential(3) == 1);
     CHECK(exponential(std::nanf("")) == 0);
+}
+
+TEST_CASE("logarithm agrees with the standard library", "[math]") {
+    double worst = 0;
+    for (float x = 1.2e-38f; x < 3e38f; x *= 1.00073f) {
+        const double exact = std::log(static_cast<double>(x));
+        worst = std::max(worst, std::fabs(static_cast<double>(logarithm(x)) - exact) / (1 + std::fabs(exact) / 2));
+    }
+    CHECK(worst < 2e-7);
+    CHECK(logarithm(1) == 0);
+    // It rises with its argument, but for a rounding: a blend between two speeds must not go backwards.
+    float before = logarithm(0.01f), worst_fall = 0;
+    for (float x = 0.01f; x < 100; x = std::nextafter(x * 1.000001f, 1e9f)) {
+        worst_fall = std::max(worst_fall, before - logarithm(x));
+        before = logarithm(x);
+    }
+    CHECK(worst_fall <= 4.8e-7f);  // a unit in the last place of 4.6, the logarithm of 100
+    CHECK(logarithm(0) == logarithm(1.17549435e-38f));
+    CHECK(logarithm(-1) == logarithm(0));
+    CHECK(logarithm(std::nanf("")) == logarithm(0));
+    CHECK(logarithm(INFINITY) == Approx(88.722839));
 }
 
 TEST_CASE("a rotation turns there and back", "[math]") {

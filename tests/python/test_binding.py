@@ -9,6 +9,7 @@ import time
 from array import array
 
 import pytest
+from conftest import ROOT
 
 import frm
 from frm import _buffers, _library
@@ -179,7 +180,8 @@ def test_structs_from_sequences(library):
 
 
 def test_enum_values(library):
-    assert frm.MODEL_DISPLACEMENT | frm.MODEL_OWN_WAVES == frm.MODEL_DEFAULT
+    assert (frm.MODEL_DISPLACEMENT | frm.MODEL_OWN_WAVES | frm.MODEL_FLUCTUATION | frm.MODEL_SPEEDS
+            | frm.MODEL_SPIN == frm.MODEL_DEFAULT)
     assert library.frm_status_name(frm.ERROR_END) == b"FRM_ERROR_END"
 
 
@@ -324,6 +326,44 @@ def test_map(context, map_path):
     with pytest.raises(frm.Error):
         map.source(info.sources)
     again.close()
+
+
+def test_added_mass(context, map_path):
+    map = frm.Map(context, map_path)
+    assert map.info().has_added_mass == 1
+    mass = map.added_mass()
+    assert len(mass) == 6 and all(len(row) == 6 for row in mass)
+    assert all(mass[i][j] == mass[j][i] and mass[i][i] > 0 for i in range(6) for j in range(6))
+    larger = map.added_mass(density=2000, scale=3)
+    for i in range(6):
+        for j in range(6):
+            assert larger[i][j] == pytest.approx(2 * 3 ** (3 + (i >= 3) + (j >= 3)) * mass[i][j], rel=1e-12)
+    with pytest.raises(frm.Error, match="density"):
+        map.added_mass(density=-1)
+    old = frm.Map(context, ROOT / "tests" / "data" / "v1.frm")
+    assert (old.info().format_version, old.info().speeds, old.info().has_added_mass) == (1, 1, 0)
+    with pytest.raises(frm.Error, match="without added mass") as caught:
+        old.added_mass()
+    assert caught.value.status == frm.Status.ERROR_STATE
+
+
+@pytest.mark.parametrize("axes", list(frm.Axes))
+def test_added_mass_in_the_hosts_axes(map_path, axes):
+    """The kinetic energy of a motion is the same in any axes, and the motion's own numbers say which is which."""
+    with frm.Context() as plain, frm.Context(axes=axes) as context:
+        ours, theirs = frm.Map(plain, map_path).added_mass(), frm.Map(context, map_path).added_mass()
+    mirrored = axes in (frm.AXES_Y_UP_LEFT, frm.AXES_Z_UP_LEFT)
+
+    def host(v):
+        if axes == frm.AXES_Y_UP_LEFT:
+            return [-v[0], v[1], v[2]]
+        return [v[0], v[2], v[1]] if axes == frm.AXES_Z_UP_LEFT else list(v)
+
+    def energy(mass, twist):
+        return sum(twist[i] * mass[i][j] * twist[j] for i in range(6) for j in range(6))
+    linear, angular = [0.3, -1.1, 0.7], [0.2, 0.5, -0.9]
+    turned = [-c for c in host(angular)] if mirrored else host(angular)
+    assert energy(theirs, host(linear) + turned) == pytest.approx(energy(ours, linear + angular), rel=1e-12)
 
 
 def test_body(context, map_path, arrays):

@@ -1,16 +1,37 @@
-// Writes the map that the tests of the interface, the binding and the program use.
+// Writes the maps that the tests of the interface, the binding and the program use: FILE, from a formula, with added
+// mass; and with a second argument, STEM.frm, which has all that a map can have, and STEM.frmraw, its unrounded tables.
 #include <cstdio>
+#include <string>
 
-#include "bake/map/formula.h"
-#include "bake/regions/tessellate.h"
+#include "bake/map/raw.h"
 #include "core/map/codec.h"
-#include "tests/support/shapes.h"
+#include "tests/support/worlds.h"
+
+namespace {
+
+bool write(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+    std::FILE* out = std::fopen(path.c_str(), "wb");
+    const bool good = out && std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
+    return out && std::fclose(out) == 0 && good;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) return 2;
-    const frm::bake::Surface box = frm::bake::tessellate(frm::test::box({0.2, 0.04, 0.3}), 0.06, 400).surface;
-    const auto file = frm::encode_map(frm::bake::formula_map(box, 12, 2, 32));
-    std::FILE* out = std::fopen(argv[1], "wb");
-    const bool good = out && std::fwrite(file.data(), 1, file.size(), out) == file.size();
-    return out && std::fclose(out) == 0 && good ? 0 : 1;
+    if (argc < 2 || argc > 3) return 2;
+    using namespace frm;
+    const bake::Surface box = test::fine_box({0.2, 0.04, 0.3}, 0.06);
+    bake::Tables tables;
+    const Map full = test::full_map(box, 8, 16, 3e-3, &tables);
+    Map map = bake::formula_map(box, 12, 2, 32);
+    map.has_added_mass = true;
+    map.added_mass = full.added_mass;
+    map.complete();
+    bool good = write(argv[1], encode_map(map));
+    if (argc == 3) {
+        const std::string stem = argv[2];
+        good =
+            write(stem + ".frm", encode_map(full)) && write(stem + ".frmraw", bake::encode_raw(full, tables)) && good;
+    }
+    return good ? 0 : 1;
 }

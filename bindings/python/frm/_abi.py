@@ -26,7 +26,7 @@ class Struct(Structure):
     @classmethod
     def field_names(cls) -> list[str]:
         """The fields that say something: all but struct_size and padding."""
-        return [name for name, *_ in cls._fields_ if name not in ("struct_size", "reserved")]
+        return [name for name, *_ in cls._fields_ if name not in ("struct_size", "reserved", "reserved_2")]
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{n}={getattr(self, n)!r}' for n in self.field_names())})"
@@ -56,7 +56,7 @@ def convert(kind, value):
     """`value` as the ctypes type `kind`: structs from any sequence of their fields, however deeply nested."""
     if not issubclass(kind, Structure) or isinstance(value, kind):
         return value
-    fields = [field for field in kind._fields_ if field[0] not in ("struct_size", "reserved")]
+    fields = [field for field in kind._fields_ if field[0] not in ("struct_size", "reserved", "reserved_2")]
     values = tuple(value)
     if len(values) != len(fields):
         names = ", ".join(name for name, *_ in fields)
@@ -152,7 +152,10 @@ class MapInfo(Struct):
                 ("density", c_float), ("viscosity", c_float), ("reynolds", c_float),
                 ("reynolds_solved", c_float), ("reference_length", c_float), ("quantisation_error", c_float),
                 ("area", c_float), ("volume", c_float), ("centroid", Vec3), ("bounds_low", Vec3),
-                ("bounds_high", Vec3), ("reserved", c_uint32)]
+                ("bounds_high", Vec3), ("reserved", c_uint32), ("fluctuation_directions", c_uint32),
+                ("speeds", c_uint32), ("has_spin", c_uint32), ("has_added_mass", c_uint32),
+                ("direction_error_rms", c_float), ("direction_error_worst", c_float),
+                ("uncertainty", c_float), ("reserved_2", c_uint32)]
 
 
 class MapSource(Struct):
@@ -165,7 +168,10 @@ class Model(IntEnum):
     MODEL_PAPER = 0
     MODEL_DISPLACEMENT = 1
     MODEL_OWN_WAVES = 2
-    MODEL_DEFAULT = 3
+    MODEL_FLUCTUATION = 4
+    MODEL_SPEEDS = 8
+    MODEL_SPIN = 16
+    MODEL_DEFAULT = 31
 
 
 class Surface(IntEnum):
@@ -319,6 +325,7 @@ FUNCTIONS = {
     "frm_map_get_info": (frm_status, (frm_map, POINTER(MapInfo))),
     "frm_map_get_source": (frm_status, (frm_map, c_uint32, POINTER(MapSource))),
     "frm_map_get_provenance": (frm_status, (frm_map, _text, c_uint64, _u64)),
+    "frm_map_get_added_mass": (frm_status, (frm_map, c_float, c_float, POINTER(c_double))),
 
     "frm_world_def_init": (frm_status, (POINTER(WorldDef), c_uint64)),
     "frm_world_create": (frm_status, (frm_context, POINTER(WorldDef), _handle)),

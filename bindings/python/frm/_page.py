@@ -20,7 +20,7 @@ _SHOWN_BODIES = 6
 _MAP_FIELDS = {
     "format_version": ("format version", ""), "file_bytes": ("size of the file", "bytes"),
     "content_hash": ("content hash", ""), "sources": ("haptic sources", ""),
-    "directions": ("directions of the stream", ""), "samples": ("samples of one period", ""),
+    "directions": ("directions of the stream, means", ""), "samples": ("samples of one period", ""),
     "triangles": ("sample triangles", ""), "period": ("period", "s"), "base_speed": ("base speed u₀", "m/s"),
     "density": ("density of the fluid baked", "kg/m³"),
                "viscosity": ("kinematic viscosity of the fluid baked", "m²/s"),
@@ -29,6 +29,11 @@ _MAP_FIELDS = {
     "area": ("area of the surface", "m²"), "volume": ("volume", "m³"),
                "centroid": ("centroid of the volume", "m"),
     "bounds_low": ("bounding box, low", "m"), "bounds_high": ("bounding box, high", "m"),
+    "fluctuation_directions": ("directions of the stream, fluctuations", ""), "speeds": ("speeds of the means", ""),
+    "has_spin": ("spin table", ""), "has_added_mass": ("added mass", ""),
+    "direction_error_rms": ("error in held-out directions, rms", "%"),
+    "direction_error_worst": ("error in held-out directions, worst", "%"),
+    "uncertainty": ("uncertainty of the mean drag, worst direction", "%"),
 }
 
 
@@ -218,6 +223,11 @@ def _map(index: int, info: MapInfo, provenance: dict, count: int) -> str:
             text = f"{value:016x}"
         elif name == "quantisation_error":
             text = f"{number(100 * value)} % of the peak force"
+        elif name in ("direction_error_rms", "direction_error_worst", "uncertainty"):
+            of = "the mean drag" if name == "uncertainty" else "the peak force"
+            text = f"{number(100 * value)} % of {of}" if value > 0 else "not known"
+        elif name.startswith("has_"):
+            text = "yes" if value else "no"
         elif isinstance(value, (int, float)):
             text = quantity(value, unit)
         else:

@@ -34,6 +34,13 @@ class Map(Object):
         """One haptic source: area (m^2), position (m) and normal in the body's frame at scale 1."""
         return self._filled(MapSource, lambda handle, out: self._lib.frm_map_get_source(handle, index, out))
 
+    def added_mass(self, density: float = 1000.0, scale: float = 1.0) -> list[list[float]]:
+        """Six rows of six: force x, y, z, torque x, y, z; kg, kg m, kg m^2. For a body of this scale in a fluid of this
+        density (kg/m^3). An Error with status ERROR_STATE if the map was made without."""
+        matrix = (c_double * 36)()
+        self._check(self._lib.frm_map_get_added_mass(self.handle, density, scale, matrix))
+        return [list(matrix[6 * row:6 * row + 6]) for row in range(6)]
+
     def provenance(self) -> str:
         """How the map was made, as JSON text."""
         status, text = two_calls(lambda *a: self._lib.frm_map_get_provenance(self.handle, *a))

@@ -92,6 +92,10 @@ static void what_it_tells(void) {
     REFUSED(FRM_ERROR_ARGUMENT, "index", frm_map_get_source(f.map, info.sources, &source));
     REFUSED(FRM_ERROR_ARGUMENT, "index", frm_map_get_source(f.map, UINT32_MAX, &source));
 
+    CHECK(info.fluctuation_directions > 0 && info.speeds == 1 && info.has_spin == 0 && info.has_added_mass == 1);
+    CHECK(info.direction_error_rms >= 0 && info.direction_error_worst >= 0 && info.uncertainty >= 0);
+    CHECK(info.reserved_2 == 0);
+
     OK(frm_map_get_provenance(f.map, NULL, 0, &size));
     CHECK(size > 2);
     text = (char *)malloc((size_t)size);
@@ -101,6 +105,33 @@ static void what_it_tells(void) {
     OK(frm_map_get_provenance(f.map, text, size, &again));
     CHECK(again == size && text[0] == '{' && strlen(text) == size - 1);
     free(text);
+}
+
+static void added_mass(void) {
+    double once[36], other[36];
+    int i, j;
+
+    OK(frm_map_get_added_mass(f.map, 1000.0f, 1.0f, once));
+    OK(frm_map_get_added_mass(f.map, 500.0f, 2.0f, other));
+    for (i = 0; i < 6; ++i) {
+        CHECK(once[7 * i] > 0);
+        for (j = 0; j < 6; ++j) {
+            const int lengths = 3 + (i >= 3) + (j >= 3);
+            const double expected = 0.5 * (double)(1 << lengths) * once[6 * i + j];
+            CHECK(once[6 * i + j] == once[6 * j + i]);
+            CHECK(other[6 * i + j] >= expected * 0.999999 - 1e-12 && other[6 * i + j] <= expected * 1.000001 + 1e-12);
+        }
+    }
+    once[0] = 42;
+    REFUSED(FRM_ERROR_ARGUMENT, "matrix", frm_map_get_added_mass(f.map, 1000.0f, 1.0f, NULL));
+    REFUSED(FRM_ERROR_ARGUMENT, "density", frm_map_get_added_mass(f.map, 0.0f, 1.0f, once));
+    REFUSED(FRM_ERROR_ARGUMENT, "density", frm_map_get_added_mass(f.map, not_a_number, 1.0f, once));
+    REFUSED(FRM_ERROR_ARGUMENT, "density", frm_map_get_added_mass(f.map, 2e5f, 1.0f, once));
+    REFUSED(FRM_ERROR_ARGUMENT, "scale", frm_map_get_added_mass(f.map, 1000.0f, 0.0f, once));
+    REFUSED(FRM_ERROR_ARGUMENT, "scale", frm_map_get_added_mass(f.map, 1000.0f, not_a_number, once));
+    REFUSED(FRM_ERROR_ARGUMENT, "scale", frm_map_get_added_mass(f.map, 1000.0f, 2e3f, once));
+    REFUSED_HANDLES(f.stale_map, f.world, frm_map_get_added_mass(h, 1000.0f, 1.0f, once));
+    CHECK(once[0] == 42);
 }
 
 void call_map(void) {
@@ -122,6 +153,7 @@ void call_map(void) {
     check_filled("frm_map_info", sizeof(frm_map_info), fill_info);
     check_filled("frm_map_source", sizeof(frm_map_source), fill_source);
     what_it_tells();
+    added_mass();
     REFUSED(FRM_ERROR_ARGUMENT, "info", frm_map_get_info(f.map, NULL));
     REFUSED(FRM_ERROR_ARGUMENT, "source", frm_map_get_source(f.map, 0, NULL));
     REFUSED(FRM_ERROR_ARGUMENT, "size", frm_map_get_provenance(f.map, text, sizeof text, NULL));

@@ -33,7 +33,7 @@ static void bad_defs(void) {
     CHECK(def.model == FRM_MODEL_DEFAULT && def.surface == FRM_SURFACE_FLAT && def.level == 0.0);
     CHECK(def.gravity == 9.80665f && def.density == 1000.0f && def.viscosity == 1e-6f);
 
-    def.model = 4;
+    def.model = 32;
     REFUSED(FRM_ERROR_ARGUMENT, "model", use(&def));
     OK(init(&def, sizeof def));
     def.surface = 2;
