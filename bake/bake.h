@@ -16,6 +16,7 @@ enum class Quality { draft, standard, high };
 
 struct BakeOptions {
     std::string mesh;  ///< path of a .glb or .gltf
+    double scale = 1;  ///< what the mesh's coordinates are multiplied by to be metres
     Quality quality = Quality::standard;
     double speed = 0.5;            ///< u0, m/s
     double density = 1000;         ///< kg/m^3
@@ -67,8 +68,8 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
 /// 1, and a note, from any thread; returning false cancels (FlowCancelled).
 std::unique_ptr<Map> bake(BakePlan& plan, const Progress& progress, BakeReport& report);
 
-/// The surface of a mesh file, closed and oriented; what was repaired is appended to `notes`.
-Surface load_surface(const std::string& path, std::vector<std::string>& notes);
+/// The surface of a mesh file, scaled, closed and oriented; what was repaired is appended to `notes`.
+Surface load_surface(const std::string& path, std::vector<std::string>& notes, double scale = 1);
 
 /// "6, 18, 38, 66, 102, ..." and the frequency of a count; 0 if it is not one of them.
 std::uint32_t frequency_of(std::uint32_t directions);

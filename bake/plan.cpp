@@ -56,8 +56,8 @@ std::uint32_t frequency_of(std::uint32_t directions) {
     return 0;
 }
 
-Surface load_surface(const std::string& path, std::vector<std::string>& notes) {
-    Repaired repaired = repair(load_gltf(path), path);
+Surface load_surface(const std::string& path, std::vector<std::string>& notes, double scale) {
+    Repaired repaired = repair(load_gltf(path, scale), path);
     notes.insert(notes.end(), repaired.notes.begin(), repaired.notes.end());
     return std::move(repaired.surface);
 }
@@ -78,7 +78,7 @@ BakePlan plan_bake(const BakeOptions& options) {
     require(most_triangles <= Map::max_triangles, "--triangles: at most 2097152");
 
     plan.mesh_hash = mesh_hash(options.mesh);
-    const Surface surface = load_surface(options.mesh, plan.notes);
+    const Surface surface = load_surface(options.mesh, plan.notes, options.scale);
     const SurfaceProperties shape = measure(surface);
     plan.surface = tessellate(surface, length(shape.high - shape.low) / longest_edges, most_triangles).surface;
     plan.regions = split_regions(plan.surface, sources);

@@ -135,9 +135,13 @@ std::vector<std::string> arguments_of(int argc, char** argv) {
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
-    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    std::vector<CLI::App*> chosen;
+    std::string name = "frm";
+    for (std::vector<CLI::App*> next = app.get_subcommands(); !next.empty(); next = next.front()->get_subcommands()) {
+        chosen = next;
+        name += " " + next.front()->get_name();
+    }
     const CLI::App& command = chosen.empty() ? app : *chosen.front();
-    const std::string name = chosen.empty() ? "frm" : "frm " + command.get_name();
     const std::vector<std::string> unknown = command.remaining();
     const bool is_missing = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
     const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);

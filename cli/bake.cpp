@@ -1,94 +1,114 @@
-// frm bake.
+// frm bake: from a mesh to a map on this machine.
 #include "bake/bake.h"
+
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "cli/command.h"
+#include "bake/tasks/rounds.h"
+#include "bake/tasks/store.h"
+#include "cli/bake_jobs.h"
+#include "cli/bake_options.h"
+#include "cli/bake_output.h"
 #include "cli/file.h"
-#include "cli/problem_file.h"
 #include "cli/progress.h"
-#include "core/map/codec.h"
 
 namespace frm::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Options {
-    bake::BakeOptions bake;
-    std::string out, quality = "standard";
-    bool json = false;
+    BakeArguments arguments;
+    std::string out, work;
+    bool named = false, force = false, keep = false, json = false;
 };
 
-bake::Quality quality_of(const std::string& word) {
-    return word == "draft" ? bake::Quality::draft : word == "high" ? bake::Quality::high : bake::Quality::standard;
+std::string kept_text(const bake::Store& store, const bake::BakePlan& plan) {
+    const std::size_t kept = store.count(plan.tasks.size());
+    return std::to_string(kept) + " of " + std::to_string(plan.tasks.size()) + " flows are kept in " + store.folder();
 }
 
-void print_plan(const bake::BakePlan& plan) {
-    for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
-    std::uint64_t bytes = 0;
-    double updates = 0;
-    for (const bake::Task& task : plan.tasks) {
-        bytes = std::max(bytes, task.cost.bytes);
-        updates += task.cost.updates;
+/// Ends a bake that did not come to its map. The flows that are done stay for the same command. `root`: the folder above
+/// the store's, if it is ours.
+[[noreturn]] void leave(bake::Store& store, const bake::BakePlan& plan, const std::string& root,
+                        const std::string& why) {
+    if (store.count(plan.tasks.size()) == 0) {
+        store.remove();
+        if (!root.empty()) rmdir(root.c_str());
+        throw Failure(why + "; no flow was finished, nothing was written");
     }
-    std::fprintf(
-        stderr,
-        "%u directions, %u sources, %zu triangles; %.3g cell updates, %.0f MB of memory for each that runs at a time\n",
-        plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), updates,
-        static_cast<double>(bytes) / 1e6);
+    throw Failure(why + "; " + kept_text(store, plan) + ", the same command goes on from there");
+}
+
+/// After the map is written.
+void clear(bake::Store& store, const std::string& root, bool keep) {
+    if (keep) {
+        std::fprintf(stderr, "the flows are kept in %s\n", store.folder().c_str());
+        return;
+    }
+    store.remove();
+    if (root.empty() || rmdir(root.c_str()) == 0) return;
+    std::error_code error;
+    std::size_t others = 0;
+    for (fs::directory_iterator entry(root, error), end; !error && entry != end; entry.increment(error))
+        others += entry->path() != fs::path(store.folder()) ? 1 : 0;
+    if (others)
+        print_note(root + " has flows of " + std::to_string(others) + " unfinished bake" + (others == 1 ? "" : "s") +
+                   " with other options; remove it if they are not wanted");
+}
+
+/// Cell updates of the tasks that are not done.
+double to_do(const bake::Store& store, const bake::BakePlan& plan) {
+    double updates = 0;
+    for (std::size_t k = 0; k < plan.tasks.size(); ++k)
+        if (!store.has(k)) updates += plan.tasks[k].cost.updates;
+    return updates;
 }
 
 void run(Options& o) {
-    o.bake.quality = quality_of(o.quality);
-    require_distinct({o.out}, {o.bake.mesh});
-    require_writable(o.out);
-    bake::BakePlan plan = load_or_show(o.bake.mesh, o.out, [&] { return bake::plan_bake(o.bake); });
-    print_plan(plan);
-    bake::BakeReport report;
-    std::unique_ptr<Map> map;
-    const auto begin = std::chrono::steady_clock::now();
-    {
-        ProgressBar bar("bake");
-        map = bake::bake(
-            plan, [&](double share, const std::string& note) { return bar.update(share, note); }, report);
-    }
-    const std::vector<std::uint8_t> file = encode_map(*map);
-    write_file(o.out, file.data(), file.size());
+    bake::BakeOptions& options = o.arguments.bake;
+    require_distinct({o.out}, {options.mesh});
+    require_map_place(o.out, o.named, o.force);
+    settle_unit(o.arguments);
+    bake::BakePlan plan = plan_and_tell(o.arguments, o.out);
 
-    double worst = 0;
-    for (const bake::DirectionReport& d : report.directions) worst = std::max(worst, d.uncertainty);
-    if (worst > 0.1)
-        std::fprintf(
-            stderr,
-            "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",
-            100 * worst);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    double updates = 0;
-    for (const bake::Task& task : plan.tasks) updates += task.cost.updates / seconds / 1e6;
-    if (o.json) {
-        nlohmann::ordered_json j{{"file", o.out},
-                                 {"file_bytes", file.size()},
-                                 {"directions", map->directions.count()},
-                                 {"sources", map->source_count()},
-                                 {"samples", map->samples},
-                                 {"reynolds", map->facts.reynolds},
-                                 {"reynolds_solved", map->facts.reynolds_solved},
-                                 {"uncertainty", worst},
-                                 {"quantisation_error", map->facts.quantisation_error},
-                                 {"mlups", updates},
-                                 {"seconds", seconds}};
-        std::printf("%s\n", j.dump(2).c_str());
-    } else {
-        std::printf(
-            "%s: %.1f kB, %u directions, %u sources, %u samples, in %.1f s (%.0f million cell updates a second)\n",
-            o.out.c_str(), static_cast<double>(file.size()) / 1e3, map->directions.count(), map->source_count(),
-            map->samples, seconds, updates);
-        std::printf(
-            "mean drag is uncertain by %.1f %% (worst direction); fluctuations are stored to %.2g of the peak force\n",
-            100 * worst, static_cast<double>(map->facts.quantisation_error));
+    const std::string root = o.work.empty() ? o.out + ".work" : "";
+    bake::Store store(bake::work_folder(root.empty() ? o.work : root, plan), plan, print_note);
+    if (store.count(plan.tasks.size()) > 0) std::fprintf(stderr, "going on: %s\n", kept_text(store, plan).c_str());
+
+    const double before = cost_of(plan).updates - to_do(store, plan);
+    const auto begin = std::chrono::steady_clock::now();
+    // It holds Ctrl-C back until the map is written whole.
+    ProgressBar bar("bake");
+    try {
+        bake::RunSettings settings;
+        settings.threads = options.threads;
+        settings.store = &store;
+        const std::vector<bake::TaskResult> results =
+            bake::solve_rounds(plan, settings, [&](const bake::RunState& state) {
+                return bar.update(state.share, state.seconds_left, bake::text_of(state));
+            });
+        bar.update(1, -1, "making the map");
+        BakeRun done;
+        done.json = o.json;
+        done.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        done.updates = cost_of(plan).updates - before;
+        finish_map(plan, results, o.out, done, [&] { bar.hide(); });
+    } catch (const bake::FlowCancelled&) {
+        bar.hide();
+        leave(store, plan, root, "interrupted");
+    } catch (const std::bad_alloc&) {
+        bar.hide();
+        leave(store, plan, root, "out of memory");
+    } catch (const std::exception& error) {
+        bar.hide();
+        leave(store, plan, root, error.what());
     }
+    clear(store, root, o.keep);
 }
 
 }  // namespace
@@ -99,49 +119,47 @@ void add_bake(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "bake", "Solves the flow around an object from many directions and stores the forces as a map.");
     command->footer(
-        "The mesh is a closed glTF surface in metres; its frame is the map's.\n"
-        "  frm bake paddle.glb -o paddle.frm --quality draft");
-    command->add_option("MESH", o.bake.mesh, "a .glb or .gltf file")->required()->check(not_empty())->type_name("");
-    command->add_option("-o,--out", o.out, "the .frm file to write; it appears whole or not at all")
-        ->required()
+        "The mesh is a closed glTF surface; its frame is the map's, its unit the metre (--scale).\n"
+        "Each flow that is finished is kept in OUT.work until the map is there: after Ctrl-C, a\n"
+        "full disk or a power cut the same command goes on where it was, and two of the same at\n"
+        "once share the work. plan, solve and merge do the same on many machines.\n"
+        "  frm bake paddle.glb\n"
+        "  frm bake paddle.glb -o out/paddle.frm --quality draft");
+    // Not required by CLI11, which would ask plan, solve and merge for it too.
+    add_bake_arguments(*command, o.arguments, false);
+    command
+        ->add_option("-o,--out", o.out,
+                     "the map to write; it appears whole or not at all (default: the mesh's name,\n"
+                     ".frm, in the current folder, if there is none yet)")
         ->check(not_empty())
         ->type_name("FILE");
-    command
-        ->add_option("--quality", o.quality, "how fine all that follows is; draft takes a minute (default: standard)")
-        ->check(one_of({"draft", "standard", "high"}))
-        ->type_name("draft|standard|high");
-    command->add_option("--speed", o.bake.speed, "base speed of the stream, m/s")
-        ->check(stream_speed_range())
-        ->type_name("N")
-        ->capture_default_str();
-    command->add_option("--density", o.bake.density, "of the fluid, kg/m^3")
-        ->check(density_range())
-        ->type_name("N")
-        ->capture_default_str();
-    command->add_option("--viscosity", o.bake.viscosity, "kinematic, m^2/s")
-        ->check(viscosity_range())
-        ->type_name("N")
-        ->capture_default_str();
-    command
-        ->add_option("--directions", o.bake.directions, "of the stream: 6, 18, 38, 66, 102, ... (default: by quality)")
-        ->check(whole_within(6, 1026))
-        ->type_name("N");
-    command->add_option("--sources", o.bake.sources, "haptic sources, 1 to 4096 (default: by quality)")
-        ->check(whole_within(1, 4096))
-        ->type_name("N");
-    command
-        ->add_option("--resolution", o.bake.resolution, "grid cells across the object, 4 to 512 (default: by quality)")
-        ->check(number_within(4, 512))
-        ->type_name("N");
-    command->add_option("--triangles", o.bake.triangles, "sample triangles of the surface at most (default: 2000)")
-        ->check(whole_within(4, 2097152))
-        ->type_name("N");
-    command->add_option("--threads", o.bake.threads, "0: all cores. The map does not depend on it")
+    command->add_flag("--force", o.force, "replace a file that is not a map, or was not named by -o");
+    command->add_option("--work", o.work, "folder for unfinished work (default: OUT.work)")
+        ->check(not_empty())
+        ->type_name("DIR");
+    command->add_flag("--keep", o.keep, "keep the finished flows when the map is written");
+    command->add_option("--threads", o.arguments.bake.threads, "0: all cores. The map does not depend on it")
         ->check(whole_within(0, 256))
         ->type_name("N")
         ->capture_default_str();
     command->add_flag("--json", o.json, "JSON on standard output");
-    command->callback([options] { run(*options); });
+    add_bake_jobs(*command);
+    // Before plan, solve or merge runs: what stands left of them would be passed over.
+    command->parse_complete_callback([command] {
+        if (command->get_subcommands().empty()) return;
+        for (const CLI::Option* option : command->get_options())
+            if (option->count() > 0)
+                throw CLI::ExtrasError(
+                    {option->get_name() + ": belongs after " + command->get_subcommands().front()->get_name()});
+    });
+    command->callback([options, command] {
+        if (!command->get_subcommands().empty()) return;  // it has run
+        if (options->arguments.bake.mesh.empty()) throw CLI::RequiredError("MESH");
+        complete(*command, options->arguments);
+        options->named = !options->out.empty();
+        if (!options->named) options->out = default_map(options->arguments.bake.mesh);
+        run(*options);
+    });
 }
 
 }  // namespace frm::cli

@@ -14,8 +14,10 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Ends the program with status 1; what there was to say has been said.
-struct Unsuccessful {};
+/// Ends the program with this status; what there was to say has been said.
+struct Unsuccessful {
+    int status = 1;
+};
 
 // Each adds its sub-command; the command runs when its arguments have been read.
 void add_bake(CLI::App& app);

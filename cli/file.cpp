@@ -52,7 +52,9 @@ void OutputFile::write(const void* data, std::size_t size) {
 }
 
 void OutputFile::commit() {
-    int error = std::fclose(file_) == 0 ? 0 : errno;
+    // On the disk before the name is: a power cut must not leave an empty file where an older one was.
+    int error = std::fflush(file_) == 0 && fsync(fileno(file_)) == 0 ? 0 : errno;
+    if (std::fclose(file_) != 0 && !error) error = errno;
     file_ = nullptr;
     if (!error && std::rename(temporary_.c_str(), target_.c_str()) != 0) error = errno;
     if (!error) return;

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     CLI::App app{
         "frm - the force of water on moving rigid objects.\n\n"
         "  frm mesh paddle.glb                    is the mesh fit for it?\n"
-        "  frm bake paddle.glb -o paddle.frm      solve the flow around an object once\n"
+        "  frm bake paddle.glb                    solve the flow around an object once: paddle.frm\n"
         "  frm info paddle.frm                    what the map holds\n"
         "  frm force paddle.frm --velocity 0,1,0  what it feels when it moves\n"
         "  frm run scene.json --report out        move it through water, and see\n\n"
@@ -69,7 +69,8 @@ int main(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error);
         std::fprintf(stderr, "%s\n", frm::cli::usage_error(app, error).c_str());
         return 2;
-    } catch (const frm::cli::Unsuccessful&) {
+    } catch (const frm::cli::Unsuccessful& ending) {
+        return ending.status;
     } catch (const frm::bake::FlowCancelled&) {
         std::fprintf(stderr, "frm: interrupted; nothing was written\n");
     } catch (const frm::Error& error) {

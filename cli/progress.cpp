@@ -1,5 +1,6 @@
 #include "cli/progress.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,6 +32,12 @@ std::string time_text(double seconds) {
     return text;
 }
 
+/// Columns of the terminal: a line that is longer would wrap, and could not be overwritten.
+std::size_t columns() {
+    winsize size{};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
+}
+
 double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
     return std::chrono::duration<double>(b - a).count();
 }
@@ -47,8 +54,18 @@ ProgressBar::ProgressBar(std::string title)
       old_interrupt_(watch(SIGINT)),
       old_terminate_(watch(SIGTERM)) {}
 
-ProgressBar::~ProgressBar() {
+void print_note(const std::string& text) {
+    std::fprintf(stderr, "%snote: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text.c_str());
+}
+
+void ProgressBar::hide() {
     if (visible_ && terminal_) std::fprintf(stderr, "\r\033[K");
+    std::fflush(stderr);
+    visible_ = false;
+}
+
+ProgressBar::~ProgressBar() {
+    hide();
     std::signal(SIGINT, old_interrupt_);
     std::signal(SIGTERM, old_terminate_);
 }
@@ -68,12 +85,14 @@ bool ProgressBar::update(double share, double seconds_left, const std::string& n
     share = std::clamp(share, 0.0, 1.0);
     const std::string left = seconds_left >= 0 ? time_text(seconds_left) + " left" : "";
     if (terminal_) {
-        constexpr int width = 20;  // so that the line stays below 80 columns and is one line
-        const int full = static_cast<int>(share * width);
-        std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f %%  %s  %s", title_.c_str(),
-                     std::string(static_cast<std::size_t>(full), '#').c_str(),
-                     std::string(static_cast<std::size_t>(width - full), '.').c_str(), 100 * share, left.c_str(),
-                     note.c_str());
+        const std::size_t across = columns(), width = across < 100 ? 10 : 20;
+        const auto full = static_cast<std::size_t>(share * static_cast<double>(width));
+        char percent[16];
+        std::snprintf(percent, sizeof percent, " %3.0f %%", 100 * share);
+        std::string line = title_ + " [" + std::string(full, '#') + std::string(width - full, '.') + "]" + percent;
+        for (const std::string& text : {left, note})
+            if (!text.empty()) line += "  " + text;
+        std::fprintf(stderr, "\r\033[K%s", line.substr(0, across - 1).c_str());
     } else {
         std::fprintf(stderr, "%s: %3.0f %%", title_.c_str(), 100 * share);
         for (const std::string& text : {left, note})

@@ -18,6 +18,8 @@ public:
     bool update(double share, const std::string& note);
     /// The same for work that knows its time: `seconds_left` below zero says that it does not yet.
     bool update(double share, double seconds_left, const std::string& note);
+    /// Takes the bar off the terminal; the next update() shows it again. Signals are held back all the same.
+    void hide();
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -31,6 +33,9 @@ private:
     void (*old_interrupt_)(int);
     void (*old_terminate_)(int);
 };
+
+/// A line "note: ..." on standard error, also where a bar is shown.
+void print_note(const std::string& text);
 
 /// True once the user has pressed Ctrl-C, or the system asked for an end (SIGTERM), while there was a ProgressBar.
 bool interrupted();

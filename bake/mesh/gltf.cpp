@@ -55,8 +55,8 @@ std::vector<Triangle> triangles_of(int mode, const std::vector<std::uint32_t>& c
 
 class SceneReader {
 public:
-    SceneReader(const std::string& path, const tinygltf::Model& model)
-        : path_(path), model_(model), data_(path, model) {}
+    SceneReader(const std::string& path, const tinygltf::Model& model, double scale)
+        : path_(path), model_(model), data_(path, model), scale_(scale) {}
 
     Surface read() {
         check_tree();
@@ -77,7 +77,8 @@ public:
                 to_visit.push_back({static_cast<std::size_t>(*child), transform});
             }
         }
-        check_size();
+        if (surface_.triangles.empty())
+            fail_gltf(path_, "", "has no triangles in its scene; export a scene with a mesh");
         return std::move(surface_);
     }
 
@@ -280,7 +281,7 @@ private:
             for (std::uint32_t& corner : triangle) {
                 if (place[corner] == unused) {
                     place[corner] = static_cast<std::uint32_t>(surface_.vertices.size());
-                    const Vec3d p = transform(vertices[corner]);
+                    const Vec3d p = transform(vertices[corner]) * scale_;
                     // Not only infinities: the square of a coordinate must stay finite too.
                     if (!(dot(p, p) < 1e18)) {
                         fail_gltf(path_, element,
@@ -297,33 +298,39 @@ private:
         }
     }
 
-    void check_size() const {
-        if (surface_.triangles.empty())
-            fail_gltf(path_, "", "has no triangles in its scene; export a scene with a mesh");
-        const SurfaceProperties box = measure(surface_);
-        const Vec3d size = box.high - box.low;
-        const double across = std::max({size.x, size.y, size.z});
-        if (across > kLargest || across < kSmallest) {
-            fail_gltf(path_, "",
-                      "the shape is " + std::to_string(across) +
-                          " m across; glTF is in metres and 1 mm to 1 km is "
-                          "possible: check the unit of the export (millimetres or inches?)");
-        }
-    }
-
     const std::string& path_;
     const tinygltf::Model& model_;
     GltfData data_;
+    double scale_;
     Surface surface_;
     std::vector<std::size_t> parent_;
     std::vector<std::size_t> roots_;
 };
 
+double longest_side(const Surface& surface) {
+    const SurfaceProperties box = measure(surface);
+    const Vec3d size = box.high - box.low;
+    return std::max({size.x, size.y, size.z});
+}
+
 }  // namespace
 
-Surface load_gltf(const std::string& path) {
+Surface load_gltf(const std::string& path, double scale) {
     const auto model = open_gltf(path);
-    return SceneReader(path, *model).read();
+    Surface surface = SceneReader(path, *model, scale).read();
+    const double across = longest_side(surface);
+    if (across > kLargest || across < kSmallest) {
+        fail_gltf(path, "",
+                  "the shape is " + std::to_string(across) +
+                      " m across; glTF is in metres and 1 mm to 1 km is "
+                      "possible: check the unit of the export (millimetres or inches?)");
+    }
+    return surface;
+}
+
+double extent_of_gltf(const std::string& path) {
+    const auto model = open_gltf(path);
+    return longest_side(SceneReader(path, *model, 1).read());
 }
 
 }  // namespace frm::bake

@@ -59,9 +59,13 @@ bool read_file(const std::string& path, Bytes& bytes, std::string& why) {
 
 // tinygltf searches the working directory too, and opens images. Only files in the mesh's own directory exist for it
 // here, and no images: a missing picture is a warning to it, and pictures play no part in a bake.
-bool exists_beside(const std::string& path, void* directory) {
-    const std::string& base = *static_cast<const std::string*>(directory);
-    if (!starts_with(path, base)) return false;
+struct Beside {
+    std::string directory;
+    std::vector<std::string> read;  // what was read there
+};
+
+bool exists_beside(const std::string& path, void* beside) {
+    if (!starts_with(path, static_cast<const Beside*>(beside)->directory)) return false;
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -74,9 +78,12 @@ bool exists_beside(const std::string& path, void* directory) {
 
 std::string same_path(const std::string& path, void*) { return path; }
 
-bool read_beside(Bytes* bytes, std::string* error, const std::string& path, void*) {
+bool read_beside(Bytes* bytes, std::string* error, const std::string& path, void* beside) {
     std::string why;
-    if (read_file(path, *bytes, why)) return true;
+    if (read_file(path, *bytes, why)) {
+        static_cast<Beside*>(beside)->read.push_back(path);
+        return true;
+    }
     if (error) *error += path + ": " + why + "\n";
     return false;
 }
@@ -171,7 +178,7 @@ void fail_gltf(const std::string& path, const std::string& element, const std::s
     throw BakeError(path + ": " + (element.empty() ? "" : element + ": ") + text);
 }
 
-std::shared_ptr<const tinygltf::Model> open_gltf(const std::string& path) {
+static std::shared_ptr<const tinygltf::Model> open_model(const std::string& path, std::vector<std::string>& files) {
     Bytes bytes;
     std::string why;
     if (!read_file(path, bytes, why)) fail_gltf(path, "", why);
@@ -190,10 +197,11 @@ std::shared_ptr<const tinygltf::Model> open_gltf(const std::string& path) {
         check_nesting(path, bytes.data(), bytes.size());
     }
 
-    std::string directory = std::filesystem::absolute(path).parent_path().string();
+    const std::string directory = std::filesystem::absolute(path).parent_path().string();
+    Beside beside{directory, {}};
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(ignore_image, nullptr);
-    loader.SetFsCallbacks({exists_beside, same_path, read_beside, nullptr, &directory});
+    loader.SetFsCallbacks({exists_beside, same_path, read_beside, nullptr, &beside});
 
     const auto model = std::make_shared<tinygltf::Model>();
     const auto size = static_cast<unsigned int>(bytes.size());
@@ -224,7 +232,20 @@ std::shared_ptr<const tinygltf::Model> open_gltf(const std::string& path) {
         }
         fail_gltf(path, "", "is not valid glTF: " + text + ". Export it again, or see what a glTF validator says");
     }
+    files.push_back(path);
+    files.insert(files.end(), beside.read.begin(), beside.read.end());
     return model;
+}
+
+std::shared_ptr<const tinygltf::Model> open_gltf(const std::string& path) {
+    std::vector<std::string> files;
+    return open_model(path, files);
+}
+
+std::vector<std::string> files_of_gltf(const std::string& path) {
+    std::vector<std::string> files;
+    open_model(path, files);
+    return files;
 }
 
 }  // namespace frm::bake

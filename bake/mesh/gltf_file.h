@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tinygltf {
 class Model;
@@ -19,5 +20,8 @@ std::string quoted(const std::string& name);
 /// Reads and parses the file and its buffers, never its images. Throws BakeError when it is not glTF 2.0, is cut off,
 /// needs an extension that is not understood here, or when a buffer is missing.
 std::shared_ptr<const tinygltf::Model> open_gltf(const std::string& path);
+
+/// The files that open_gltf reads: `path` itself first, then those of its buffers that lie in files of their own.
+std::vector<std::string> files_of_gltf(const std::string& path);
 
 }  // namespace frm::bake

@@ -1,4 +1,7 @@
 """frm bake: a real one, small; what it leaves when it fails."""
+import os
+import pty
+import shutil
 import signal
 import subprocess
 import time
@@ -93,23 +96,23 @@ def test_the_mesh_is_not_overwritten(refused, tmp_path):
     assert mesh.read_bytes() == glb()
 
 
-def test_an_older_file_stays_when_it_fails(frm, tmp_path):
-    (tmp_path / "b.frm").write_text("older")
+def test_an_older_file_stays_when_it_fails(frm, map_path, tmp_path):
+    older = map_path.read_bytes()
+    (tmp_path / "b.frm").write_bytes(older)
     mesh = tmp_path / "mesh.glb"
     mesh.write_bytes(cube_without_a_side())
     assert frm("bake", mesh, "-o", tmp_path / "b.frm", *SMALL).status == 1
-    assert (tmp_path / "b.frm").read_text() == "older"
+    assert (tmp_path / "b.frm").read_bytes() == older
     assert names(tmp_path) == ["b.frm", "mesh.glb", "mesh.problem.glb"]
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("command", [["bake"], ["flow", "--direction", "1,0,0", "--speed", "1", "--start-up", "1000"]],
-                         ids=["bake", "flow"])
-def test_an_interrupt_leaves_nothing(box, tmp_path, command, number):
+def test_an_interrupted_flow_leaves_nothing(box, tmp_path, number):
     (tmp_path / "out").write_text("older")
-    process = subprocess.Popen([PROGRAM, *command, str(box), "-o", str(tmp_path / "out"), "--threads", "1"], text=True,
+    process = subprocess.Popen([PROGRAM, "flow", "--direction", "1,0,0", "--speed", "1", "--start-up", "1000", str(box),
+                                "-o", str(tmp_path / "out"), "--threads", "1"], text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    # The first progress line comes after two seconds: the solver runs then (flow: it is still starting).
+    # The first progress line comes after two seconds: the flow is still starting.
     for line in process.stderr:
         if "%, " in line:
             break
@@ -117,3 +120,89 @@ def test_an_interrupt_leaves_nothing(box, tmp_path, command, number):
     out, err = process.communicate(timeout=20)
     assert process.returncode == 1 and out == "" and "interrupted" in err
     assert names(tmp_path) == ["out"] and (tmp_path / "out").read_text() == "older"
+
+
+def test_without_out_it_is_the_meshs_name_here(good, refused, box, baked, tmp_path):
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "here").mkdir()
+    shutil.copy(box, tmp_path / "meshes" / "a box.glb")
+    good("bake", "../meshes/a box.glb", *SMALL, cwd=tmp_path / "here")
+    assert names(tmp_path / "meshes") == ["a box.glb"] and names(tmp_path / "here") == ["a box.frm"]
+    # It was not named: hours may be in it.
+    before = (tmp_path / "here" / "a box.frm").read_bytes()
+    refused(1, "a box.frm|already there|--force|-o", "bake", "../meshes/a box.glb", *SMALL, cwd=tmp_path / "here")
+    assert (tmp_path / "here" / "a box.frm").read_bytes() == before
+    good("bake", "../meshes/a box.glb", *SMALL, "--speed", "1", "--force", cwd=tmp_path / "here")
+    assert (tmp_path / "here" / "a box.frm").read_bytes() != before
+
+
+def test_what_is_not_a_map_is_not_replaced(good, refused, box, map_path, tmp_path):
+    out = tmp_path / "thesis.txt"
+    out.write_text("years of work")
+    refused(1, "thesis.txt|not a map|--force", "bake", box, "-o", out, *SMALL)
+    assert out.read_text() == "years of work" and names(tmp_path) == ["thesis.txt"]
+    good("bake", box, "-o", out, *SMALL, "--force")
+    older = tmp_path / "older.frm"
+    shutil.copy(map_path, older)
+    good("bake", box, "-o", older, *SMALL)  # a map that was named is baked anew
+    assert older.read_bytes() == out.read_bytes()
+
+
+def sized(extent):
+    return glb(vertices=[tuple(c * extent / 0.1 for c in v) for v in CUBE])
+
+
+@pytest.mark.parametrize("extent, words", [
+    (1500, "1.5e+03 m|millimetres|--scale 0.001|1.5 m|--yes"), (30, "30 m|inches|--scale 0.0254|--yes"),
+    (0.0015, "0.0015 m|converted twice|--scale 1000|--yes")])
+@pytest.mark.parametrize("command", [["bake"], ["bake", "plan"]], ids=["bake", "plan"])
+def test_a_size_that_is_not_plausible_needs_a_word(refused, tmp_path, command, extent, words):
+    mesh = tmp_path / "mesh.glb"
+    mesh.write_bytes(sized(extent))
+    refused(1, "mesh.glb|" + words, *command, mesh, "-o", tmp_path / "out", *SMALL)
+    assert names(tmp_path) == ["mesh.glb"]
+
+
+def test_a_scaled_mesh_is_the_mesh_in_metres(good, tmp_path):
+    (tmp_path / "mm.glb").write_bytes(sized(100))
+    (tmp_path / "m.glb").write_bytes(sized(0.1))
+    good("bake", tmp_path / "mm.glb", "--scale", "0.001", "-o", tmp_path / "mm.frm", *SMALL)
+    good("bake", tmp_path / "m.glb", "-o", tmp_path / "m.frm", *SMALL)
+    one, two = (good("info", tmp_path / name, "--json").json for name in ("mm.frm", "m.frm"))
+    assert one["provenance"]["scale"] == 0.001 and "scale" not in two["provenance"]
+    assert one["volume"] == pytest.approx(two["volume"], rel=1e-5) and one["volume"] == pytest.approx(1e-3, rel=1e-5)
+    assert one["reynolds"] == pytest.approx(two["reynolds"], rel=1e-5)
+
+
+def test_yes_takes_the_size_as_it_is(good, tmp_path):
+    (tmp_path / "ship.glb").write_bytes(sized(30))
+    good("bake", tmp_path / "ship.glb", "--yes", "-o", tmp_path / "ship.frm", *SMALL)
+    assert good("info", tmp_path / "ship.frm", "--json").json["volume"] == pytest.approx(27000, rel=1e-5)
+
+
+@pytest.mark.parametrize("answers, status, words", [
+    ("y\n", 0, "drawn in millimetres, so that it is 0.1 m? [y/n]"), ("n\ny\n", 0, "Is 100 m right? [y/n]"),
+    ("n\nn\n", 1, "--scale F"), ("\x04", 1, "--scale F")], ids=["scaled", "as it is", "neither", "end"])
+def test_on_a_terminal_it_asks(good, tmp_path, answers, status, words):
+    (tmp_path / "mesh.glb").write_bytes(sized(100))
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen([PROGRAM, "bake", str(tmp_path / "mesh.glb"), "-o", str(tmp_path / "out.frm"), *SMALL],
+                               stdin=theirs, stdout=subprocess.PIPE, stderr=theirs)
+    os.close(theirs)
+    os.write(ours, answers.encode())
+    said = b""
+    while True:
+        try:
+            chunk = os.read(ours, 65536)
+        except OSError:  # how Linux says that the other side is closed
+            break
+        if not chunk:
+            break
+        said += chunk
+    assert process.wait(timeout=100) == status
+    assert words in said.decode()
+    if status == 0:
+        volume = good("info", tmp_path / "out.frm", "--json").json["volume"]
+        assert volume == pytest.approx(1e-3 if answers == "y\n" else 1e6, rel=1e-5)
+    else:
+        assert names(tmp_path) == ["mesh.glb"]

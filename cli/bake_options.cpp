@@ -1,0 +1,124 @@
+#include "cli/bake_options.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "bake/mesh/gltf.h"
+#include "bake/mesh/units.h"
+#include "cli/problem_file.h"
+
+namespace frm::cli {
+namespace {
+
+std::string number(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", v);
+    return text;
+}
+
+/// Anything but a clear yes is a no, the end of the input too.
+bool ask(const std::string& question) {
+    std::fprintf(stderr, "%s [y/n] ", question.c_str());
+    std::fflush(stderr);
+    std::string answer;
+    return static_cast<bool>(std::getline(std::cin, answer)) && !answer.empty() &&
+           (answer[0] == 'y' || answer[0] == 'Y');
+}
+
+}  // namespace
+
+void settle_unit(BakeArguments& a) {
+    if (a.has_scale || a.yes) return;
+    const double extent = bake::extent_of_gltf(a.bake.mesh);
+    if (bake::plausible_size(extent)) return;
+    const bake::Unit unit = bake::likely_unit(extent);
+    const std::string as_it_is = number(extent) + " m", scaled = number(extent * unit.scale) + " m";
+    char scale[32];
+    std::snprintf(scale, sizeof scale, "%g", unit.scale);
+    if (!isatty(STDIN_FILENO) || !isatty(STDERR_FILENO))
+        throw Failure(a.bake.mesh + ": is " + as_it_is + " long, as glTF counts in metres. If it was drawn in " +
+                      unit.name + ", add --scale " + scale + " (" + scaled + "); if " + as_it_is +
+                      " is right, add --yes");
+    std::fprintf(stderr, "%s is %s long, as glTF counts in metres.\n", a.bake.mesh.c_str(), as_it_is.c_str());
+    if (ask("Was it drawn in " + std::string(unit.name) + ", so that it is " + scaled + "?"))
+        a.bake.scale = unit.scale;
+    else if (!ask("Is " + as_it_is + " right?"))
+        throw Failure(a.bake.mesh + ": say by how much its size is to be multiplied: --scale F");
+}
+
+Cost cost_of(const bake::BakePlan& plan) {
+    Cost cost;
+    for (const bake::Task& task : plan.tasks) {
+        cost.updates += task.cost.updates;
+        cost.bytes = std::max(cost.bytes, task.cost.bytes);
+    }
+    return cost;
+}
+
+void complete(const CLI::App& command, BakeArguments& a) {
+    a.bake.quality = a.quality == "draft"  ? bake::Quality::draft
+                     : a.quality == "high" ? bake::Quality::high
+                                           : bake::Quality::standard;
+    a.has_scale = command.count("--scale") > 0;
+}
+
+bake::BakePlan plan_and_tell(const BakeArguments& a, const std::string& out) {
+    bake::BakePlan plan = load_or_show(a.bake.mesh, out, [&] { return bake::plan_bake(a.bake); });
+    for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+    const Cost cost = cost_of(plan);
+    std::fprintf(stderr,
+                 "%u directions, %u sources, %zu triangles; %zu flows, %.3g cell updates, %.0f MB of memory for each "
+                 "that runs at a time\n",
+                 plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), plan.tasks.size(),
+                 cost.updates, static_cast<double>(cost.bytes) / 1e6);
+    return plan;
+}
+
+void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required) {
+    command.add_option("MESH", a.bake.mesh, "a .glb or .gltf file")
+        ->required(required)
+        ->check(not_empty())
+        ->type_name("");
+    command
+        .add_option("--quality", a.quality, "how fine all that follows is; draft takes a minute (default: standard)")
+        ->check(one_of({"draft", "standard", "high"}))
+        ->type_name("draft|standard|high");
+    command
+        .add_option("--scale", a.bake.scale,
+                    "multiply the mesh's size: 0.001 for one drawn in millimetres, 0.01\n"
+                    "centimetres, 0.0254 inches (default: 1; a size that is not plausible is asked about)")
+        ->check(number_within(1e-6, 1e6))
+        ->type_name("F");
+    command.add_flag("--yes", a.yes, "the mesh's size is right as it is: do not ask");
+    command.add_option("--speed", a.bake.speed, "base speed of the stream, m/s")
+        ->check(stream_speed_range())
+        ->type_name("N")
+        ->capture_default_str();
+    command.add_option("--density", a.bake.density, "of the fluid, kg/m^3")
+        ->check(density_range())
+        ->type_name("N")
+        ->capture_default_str();
+    command.add_option("--viscosity", a.bake.viscosity, "kinematic, m^2/s")
+        ->check(viscosity_range())
+        ->type_name("N")
+        ->capture_default_str();
+    command
+        .add_option("--directions", a.bake.directions, "of the stream: 6, 18, 38, 66, 102, ... (default: by quality)")
+        ->check(whole_within(6, 1026))
+        ->type_name("N");
+    command.add_option("--sources", a.bake.sources, "haptic sources, 1 to 4096 (default: by quality)")
+        ->check(whole_within(1, 4096))
+        ->type_name("N");
+    command
+        .add_option("--resolution", a.bake.resolution, "grid cells across the object, 4 to 512 (default: by quality)")
+        ->check(number_within(4, 512))
+        ->type_name("N");
+    command.add_option("--triangles", a.bake.triangles, "sample triangles of the surface at most (default: 2000)")
+        ->check(whole_within(4, 2097152))
+        ->type_name("N");
+}
+
+}  // namespace frm::cli

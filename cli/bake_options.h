@@ -1,0 +1,37 @@
+// What frm bake and frm bake plan take alike: the mesh, in which unit, and how finely it is to be baked.
+#pragma once
+
+#include <string>
+
+#include "bake/bake.h"
+#include "cli/command.h"
+
+namespace frm::cli {
+
+struct BakeArguments {
+    bake::BakeOptions bake;
+    std::string quality = "standard";
+    bool has_scale = false, yes = false;
+};
+
+/// The options; MESH itself is `required` or not.
+void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required);
+
+/// After parsing: what the words given come to.
+void complete(const CLI::App& command, BakeArguments& a);
+
+/// Reads the mesh's size. One that is not plausible in metres gets a question on a terminal, else a Failure that says
+/// what to add to the command.
+void settle_unit(BakeArguments& a);
+
+/// plan_bake(), with its notes and what it will take on standard error.
+bake::BakePlan plan_and_tell(const BakeArguments& a, const std::string& out);
+
+/// Cell updates of all tasks, and the memory of the largest.
+struct Cost {
+    double updates = 0;
+    std::uint64_t bytes = 0;
+};
+Cost cost_of(const bake::BakePlan& plan);
+
+}  // namespace frm::cli

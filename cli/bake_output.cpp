@@ -1,0 +1,82 @@
+#include "cli/bake_output.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/file.h"
+#include "core/map/codec.h"
+
+namespace frm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A map, by its first bytes; or a file without any, which is nobody's loss.
+bool is_map(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    char head[sizeof format::magic] = {};
+    file.read(head, sizeof head);
+    return file.gcount() == 0 || (file.gcount() == sizeof head && std::memcmp(head, format::magic, sizeof head) == 0);
+}
+
+}  // namespace
+
+void require_map_place(const std::string& out, bool named, bool force) {
+    std::error_code error;
+    if (!force && fs::is_regular_file(out, error)) {
+        if (!named) throw Failure(out + ": is already there; --force replaces it, or name another file with -o");
+        if (!is_map(out)) throw Failure(out + ": is there and is not a map; --force replaces it");
+    }
+    require_writable(out);
+}
+
+std::string default_map(const std::string& mesh) { return fs::path(mesh).stem().string() + ".frm"; }
+
+void finish_map(const bake::BakePlan& plan, const std::vector<bake::TaskResult>& results, const std::string& out,
+                const BakeRun& run, const std::function<void()>& before_words) {
+    bake::BakeReport report;
+    const std::unique_ptr<Map> map = bake::make_map(plan, results, report);
+    const std::vector<std::uint8_t> file = encode_map(*map);
+    write_file(out, file.data(), file.size());
+    before_words();
+
+    double worst = 0;
+    for (const bake::DirectionReport& d : report.directions) worst = std::max(worst, d.uncertainty);
+    if (worst > 0.1)
+        std::fprintf(
+            stderr,
+            "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",
+            100 * worst);
+    const double mlups = run.seconds > 0 ? run.updates / run.seconds / 1e6 : 0;
+    if (run.json) {
+        nlohmann::ordered_json j{{"file", out},
+                                 {"file_bytes", file.size()},
+                                 {"directions", map->directions.count()},
+                                 {"sources", map->source_count()},
+                                 {"samples", map->samples},
+                                 {"flows", plan.tasks.size()},
+                                 {"reynolds", map->facts.reynolds},
+                                 {"reynolds_solved", map->facts.reynolds_solved},
+                                 {"uncertainty", worst},
+                                 {"quantisation_error", map->facts.quantisation_error},
+                                 {"mlups", mlups},
+                                 {"seconds", run.seconds}};
+        std::printf("%s\n", j.dump(2).c_str());
+        return;
+    }
+    char speed[64] = "";
+    if (mlups > 0) std::snprintf(speed, sizeof speed, " (%.0f million cell updates a second)", mlups);
+    std::printf("%s: %.1f kB, %u directions, %u sources, %u samples, in %.1f s%s\n", out.c_str(),
+                static_cast<double>(file.size()) / 1e3, map->directions.count(), map->source_count(), map->samples,
+                run.seconds, speed);
+    std::printf(
+        "mean drag is uncertain by %.1f %% (worst direction); fluctuations are stored to %.2g of the peak force\n",
+        100 * worst, static_cast<double>(map->facts.quantisation_error));
+}
+
+}  // namespace frm::cli

@@ -1,0 +1,30 @@
+// The end of a bake: the map's file, and what is said of it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bake/bake.h"
+
+namespace frm::cli {
+
+/// Throws Failure now if the map could not be written to `out` after hours. A file that is there is replaced if it is a
+/// map and was `named` by the user, or if `force` says so.
+void require_map_place(const std::string& out, bool named, bool force);
+
+/// NAME.frm in the current folder, for a mesh NAME.glb anywhere.
+std::string default_map(const std::string& mesh);
+
+struct BakeRun {
+    double seconds = 0;  ///< wall time of this run
+    double updates = 0;  ///< cell updates done in this run
+    bool json = false;
+};
+
+/// Makes the map, writes it, and says so on standard output; `before_words` is called in between.
+void finish_map(
+    const bake::BakePlan& plan, const std::vector<bake::TaskResult>& results, const std::string& out,
+    const BakeRun& run, const std::function<void()>& before_words = [] {});
+
+}  // namespace frm::cli
