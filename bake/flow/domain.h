@@ -46,11 +46,12 @@ struct Domain {
     double viscosity = 0;       ///< finest cells^2 a step, the one solved
     double length = 0;          ///< reference length in finest cells
     double bulk = 0;            ///< size of the body in finest cells: root of its projected area, a section's height
-    double sponge = 0;          ///< coarsest cells of raised viscosity before the outlet
+    double sponge = 0;          ///< coarsest cells of raised viscosity before the outlet (turning: behind all faces)
     double force_unit = 0;      ///< N of one lattice unit
     double drag_area = 0;       ///< projected area in the units of a lattice force: 2 F / (u^2 drag_area) is Cd
     double layer_error = 0;     ///< share of the drag that boundary layers thinner than cells may cost
     double radius = 0;          ///< largest distance from the spin's axis, m
+    bool turning = false;       ///< the lattice turns with the body, about z
     Vec3d spin;                 ///< stream's frame, radians a finest step
     Vec3d spin_centre;          ///< finest cells from node (0, 0, 0) of the finest block
     /// The clock's first step (beyond the ramp where the flow starts from another run's), when the ramp of the stream

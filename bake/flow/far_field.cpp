@@ -1,6 +1,9 @@
 #include "bake/flow/far_field.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "bake/flow/collision.h"
 
 namespace frm::bake::flow {
 namespace {
@@ -74,6 +77,56 @@ std::vector<float> relaxation_times(const Grid& grid, double base, double sponge
         times[x] = static_cast<float>(base + std::max(0.0, 1 - base) * depth * depth);
     }
     return times;
+}
+
+std::array<float, direction_count> still_populations(const Turning& turning, float x, float y) {
+    float ux = turning.far_x(y), uy = turning.far_y(x);
+    from_middle(turning, {x, y, 0, 0}, 1, &ux, &uy);
+    std::array<float, direction_count> f{};
+    collided(0, ux, uy, 0, {}, [&](int i, float value) { f[static_cast<std::size_t>(i)] = value; });
+    return f;
+}
+
+void fill_still(const Grid& grid, Populations& populations, const Turning& turning) {
+    for (int j = -1; j <= grid.ny; ++j) {
+        for (int i = -1; i <= grid.nx; ++i) {
+            const bool beside = i < 0 || j < 0 || i == grid.nx || j == grid.ny;
+            const auto f = still_populations(turning, static_cast<float>(i), static_cast<float>(j));
+            for (int k = -1; k <= grid.nz; ++k) {
+                if (!beside && k >= 0 && k < grid.nz) continue;
+                // The very first ghost ahead lies in the slack before the rows: not an index of its own.
+                const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(grid.index(0, j, k)) + i;
+                for (int d = 0; d < direction_count; ++d) populations.at(d)[cell] = f[static_cast<std::size_t>(d)];
+            }
+        }
+    }
+}
+
+void close_row_still(const Grid& grid, Populations& populations, std::size_t row, const Turning& turning) {
+    const auto y = static_cast<float>(grid.row_y(row));
+    const std::size_t first = grid.row(row);
+    // The last cell of a row's memory is the ghost ahead of the next row.
+    const auto behind = still_populations(turning, static_cast<float>(grid.nx), y);
+    const auto ahead = still_populations(turning, -1, y + 1);
+    for (int i = 1; i < direction_count; ++i) {
+        const auto d = static_cast<std::size_t>(i);
+        if (directions[d].x < 0) populations.at(i)[first + static_cast<std::size_t>(grid.nx)] = behind[d];
+        if (directions[d].x > 0) populations.at(i)[first + grid.pitch() - 1] = ahead[d];
+    }
+}
+
+std::vector<std::vector<float>> still_relaxation_times(const Grid& grid, double base, double sponge) {
+    std::vector<std::vector<float>> rows(static_cast<std::size_t>(std::ceil(sponge)) + 1);
+    for (std::size_t across = 0; across < rows.size(); ++across) {
+        rows[across].resize(grid.pitch());
+        for (int x = 0; x < static_cast<int>(grid.pitch()); ++x) {
+            const double away = std::min({static_cast<double>(across), static_cast<double>(x), grid.nx - 1.0 - x});
+            const double depth = sponge > 0 ? std::clamp(1 - away / sponge, 0.0, 1.0) : 0.0;
+            rows[across][static_cast<std::size_t>(x)] =
+                static_cast<float>(base + std::max(0.0, 1 - base) * depth * depth);
+        }
+    }
+    return rows;
 }
 
 }  // namespace frm::bake::flow

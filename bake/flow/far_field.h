@@ -1,4 +1,5 @@
-// What surrounds the box: the uniform stream ahead and beside it, an open end behind it.
+// What surrounds the box: the uniform stream ahead and beside it, an open end behind it; or, in the frame that turns with
+// the body, water that stands still and so goes round.
 #pragma once
 
 #include <array>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "bake/flow/lattice.h"
+#include "bake/flow/turning.h"
 
 namespace frm::bake::flow {
 
@@ -28,5 +30,18 @@ void close_row(const Grid& grid, Populations& populations, std::size_t row,
 /// Relaxation time for each cell of a row: the fluid's, and in the last `sponge` cells before the outlet rising to 1,
 /// where the wake dissolves before it meets the outlet.
 std::vector<float> relaxation_times(const Grid& grid, double base, double sponge);
+
+/// In the turning frame: what a cell at (x, y) of water at rest holds after the collision.
+std::array<float, direction_count> still_populations(const Turning& turning, float x, float y);
+
+/// Fills all ghosts with water at rest, and puts back the two of a row after the collision has run over them. To first
+/// order the characteristic condition again; where the flow leaves the box, its last cells are thick enough to follow.
+void fill_still(const Grid& grid, Populations& populations, const Turning& turning);
+void close_row_still(const Grid& grid, Populations& populations, std::size_t row, const Turning& turning);
+
+/// Relaxation times for the rows of a box with `sponge` cells of raised viscosity behind all faces: [distance of the row
+/// from the nearest face across y and z, the last for all farther ones]. Water at rest turns as a whole and does not
+/// feel it.
+std::vector<std::vector<float>> still_relaxation_times(const Grid& grid, double base, double sponge);
 
 }  // namespace frm::bake::flow

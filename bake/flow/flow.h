@@ -21,10 +21,12 @@ struct FlowCase {
     double density = 1000;      ///< kg/m^3, > 0
     double resolution = 24;     ///< finest cells over the reference length, 4 to 512
     double reference_length =
-        0;                 ///< m; 0: the square root of the projected area (section: the extent across the stream)
-    double start_up = 10;  ///< discarded, in reference lengths travelled by the stream
-    double duration = 20;  ///< recorded at most, in reference lengths travelled by the stream
-    double turn = 0;       ///< degrees by which the lattice is turned about the stream from where it would be put
+        0;  ///< m; 0: the square root of the projected area (section: the extent across the stream), but for bodies that
+            ///< turn at most twice the largest distance from the axis
+    double start_up = 10;  ///< discarded, in reference lengths travelled by the stream (spin alone: the fastest point)
+    double duration = 20;  ///< recorded at most, in the same
+    double turn = 0;  ///< degrees by which the lattice is turned about the stream from where it would be put (about
+                      ///< the spin in the frame that turns)
 
     double confidence = 0;  ///< stop once the standard error of the mean drag is below this share; 0: run `duration`
     double seconds = 0;     ///< stop after this wall time, with what there is; 0: no limit
@@ -40,8 +42,11 @@ struct FlowCase {
     double slab = 0;  ///< section only: solve this many reference lengths of its span in three dimensions, periodic
                       ///< along the normal (wakes above a Reynolds number of 200 need it); 0: two dimensions
 
-    Vec3d spin;         ///< rad/s; a body of revolution turns about the axis through `spin_centre`, the stream aside
+    Vec3d spin;         ///< rad/s, about the axis through `spin_centre`; with a stream only of bodies of revolution
     Vec3d spin_centre;  ///< m
+    bool turning =
+        false;  ///< spin alone: solve in the frame that turns with the body even where it is one of revolution,
+                ///< whose wall could move instead (cheaper)
 
     int threads = 0;  ///< 0: as many as OpenMP gives. The result is the same bits for any number
     std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< bytes; more is refused before anything is allocated
@@ -67,7 +72,7 @@ struct FlowPlan {
     std::uint64_t steps = 0;      ///< of the finest block, start-up included
     double updates = 0;           ///< cell updates of the whole run, coarse blocks in their slower time
     std::uint64_t bytes = 0;
-    std::array<Vec3d, 3> axes;      ///< the stream's frame in the mesh's: x along the stream
+    std::array<Vec3d, 3> axes;      ///< the stream's frame in the mesh's: x along the stream; turning: z along the spin
     std::vector<FlowBlock> blocks;  ///< finest first
     std::string warning;            ///< of plan_flow: empty, or what a user should know (thinner than two cells, ...)
 };

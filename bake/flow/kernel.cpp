@@ -47,9 +47,10 @@ constexpr std::size_t chunk = 8 * Grid::lanes;
 // In three passes over a chunk that stays in the nearest cache. As one, it is a chain of 500 instructions with two
 // divisions and two roots in it, too long for the processor to work on the next cells meanwhile (a seventh slower on
 // a Zen 5 core).
-FRM_FLOW_CLONES
-void collide(const Pull& in, const Push& out, std::size_t count, const float* __restrict relaxation, float smagorinsky,
-             const float* push) {
+template <bool turns>
+FRM_FLOW_INLINE void collide_cells(const Pull& in, const Push& out, std::size_t count,
+                                   const float* __restrict relaxation, float smagorinsky, const float* push,
+                                   const Turning& turning, float y) {
     const float* const* const from = in.from;
     float* const* const to = out.to;
     const float model = 18 * smagorinsky;
@@ -62,9 +63,16 @@ void collide(const Pull& in, const Push& out, std::size_t count, const float* __
         for (std::size_t x = 0; x < size; ++x) {
             const Moments m = moments_of([&](int i) { return from[i][first + x]; });
             excess[x] = m.excess;
-            ux[x] = m.ux + push_x;
-            uy[x] = m.uy + push_y;
-            uz[x] = m.uz + push_z;
+            if constexpr (turns) {
+                const Turning::Kick kick = turning.kick(m.ux, m.uy, static_cast<float>(static_cast<int>(first + x)), y);
+                ux[x] = m.ux + kick.x;
+                uy[x] = m.uy + kick.y;
+                uz[x] = m.uz;
+            } else {
+                ux[x] = m.ux + push_x;
+                uy[x] = m.uy + push_y;
+                uz[x] = m.uz + push_z;
+            }
             xx[x] = m.stress.xx;
             yy[x] = m.stress.yy;
             zz[x] = m.stress.zz;
@@ -83,6 +91,20 @@ void collide(const Pull& in, const Push& out, std::size_t count, const float* __
             collided(excess[x], ux[x], uy[x], uz[x], q, [&](int i, float f) { to[i][first + x] = f; });
         }
     }
+}
+
+FRM_FLOW_CLONES
+void collide(const Pull& in, const Push& out, std::size_t count, const float* relaxation, float smagorinsky,
+             const float* push) {
+    collide_cells<false>(in, out, count, relaxation, smagorinsky, push, {}, 0);
+}
+
+FRM_FLOW_CLONES
+void collide_turning(const Pull& in, const Push& out, std::size_t count, const float* relaxation, float smagorinsky,
+                     const Turning& turning, float y) {
+    const float none[3] = {};
+    const Turning t = turning;  // nothing that is stored can change it
+    collide_cells<true>(in, out, count, relaxation, smagorinsky, none, t, y);
 }
 
 FRM_FLOW_CLONES
@@ -132,6 +154,16 @@ void collide_row(const Grid& grid, const Populations& from, Populations& to, std
     Push out;
     for (int i = 0; i < direction_count; ++i) out.to[i] = to.at(i) + first;
     collide(in, out, grid.pitch(), collision.relaxation, collision.smagorinsky, collision.push);
+}
+
+void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision,
+                 const Turning& turning) {
+    const std::size_t first = grid.row(r);
+    const Pull in = pull(grid, from, first, grid.row_z(r));
+    Push out;
+    for (int i = 0; i < direction_count; ++i) out.to[i] = to.at(i) + first;
+    collide_turning(in, out, grid.pitch(), collision.relaxation, collision.smagorinsky, turning,
+                    static_cast<float>(grid.row_y(r)));
 }
 
 void observe(const Grid& grid, const Populations& from, int i, int j, int k, std::size_t count, float relaxation,

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "bake/flow/lattice.h"
+#include "bake/flow/turning.h"
 
 namespace frm::bake::flow {
 
@@ -17,6 +18,10 @@ struct Collision {
 
 /// Row r of `to` from the neighbours in `from`. The row's ghosts are left with no meaning.
 void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision);
+
+/// The same in the turning frame; there is no push then.
+void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision,
+                 const Turning& turning);
 
 /// What blocks exchange of a cell: density less one, velocity, and stress over relaxation time (xx, yy, zz, xy, xz,
 /// yz), which is the rate of strain but for constants: smooth across a change of cell size, where populations are not.

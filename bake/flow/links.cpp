@@ -249,7 +249,7 @@ Body cut_links(const Domain& domain, const Regions& regions) {
         const Vec3d point = node + Vec3d{q * d.x, q * d.y, grid.periodic ? 0.0 : q * d.z};
         const Vec3d arm = mesh_origin + point;
         // A moving wall (the same source): 6 w c.u, shared like the other terms beyond half-way.
-        const Vec3d moves = cross(domain.spin, point - domain.spin_centre);
+        const Vec3d moves = domain.turning ? Vec3d{} : cross(domain.spin, point - domain.spin_centre);
         const double along = moves.x * d.x + moves.y * d.y + moves.z * d.z;
         link.wall = static_cast<float>(-6 * static_cast<double>(weight(hit.direction)) * along *
                                        (hit.distance >= 0.5f ? 0.5 / q : 1.0));

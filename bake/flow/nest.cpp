@@ -27,7 +27,11 @@ Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int th
         level.from = std::make_unique<Populations>(grid);
         level.to = std::make_unique<Populations>(grid);
         const bool outermost = l + 1 == domain.levels();
-        level.relaxation = relaxation_times(grid, domain.relaxation(l), outermost ? domain.sponge : 0);
+        level.relaxation =
+            relaxation_times(grid, domain.relaxation(l), outermost && !domain.turning ? domain.sponge : 0);
+        if (outermost && domain.turning) {
+            level.still_relaxation = still_relaxation_times(grid, domain.relaxation(l), domain.sponge);
+        }
         level.collision.smagorinsky = smagorinsky;
         level.shares = std::make_unique<Shares>(grid.rows(), threads);
         levels_.push_back(std::move(level));
@@ -50,9 +54,18 @@ Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int th
                     run.last - run.first, char{1});
     }
     for (std::size_t r = 0; r < finest.rows(); ++r) solid_begin_[r + 1] += solid_begin_[r];
-    const auto rest = stream_populations(stream(0));
-    fill_stream(levels_.back().grid, *levels_.back().from, rest);
-    fill_stream(levels_.back().grid, *levels_.back().to, rest);
+    fill_far(*levels_.back().from, 0);
+    fill_far(*levels_.back().to, 0);
+}
+
+/// The ghosts round the outermost block, as they are once the step that ends at `step` has collided.
+void Nest::fill_far(Populations& populations, std::uint64_t step) const {
+    const Grid& grid = levels_.back().grid;
+    if (domain_.turning) {
+        fill_still(grid, populations, step == 0 ? Turning{} : turning(levels_.size() - 1, step - steps_at_once()));
+    } else {
+        fill_stream(grid, populations, stream_populations(stream(step)));
+    }
 }
 
 double Nest::ramp(double step) const {
@@ -83,6 +96,27 @@ void Nest::set_push(Level& level, std::uint64_t steps) const {
     level.ripple = domain_.finest().periodic && domain_.finest().nz > 1 ? level.collision.push[1] : 0.0f;
 }
 
+/// Of the step of a block that begins at `step`; at rest where the frame does not turn. The spin grows as the stream does.
+Turning Nest::turning(std::size_t l, std::uint64_t step) const {
+    Turning t;
+    if (!domain_.turning) return t;
+    const double steps = static_cast<double>(std::uint64_t{1} << l), now = static_cast<double>(step);
+    const double before = domain_.spin.z * ramp(now), after = domain_.spin.z * ramp(now + steps);
+    const Vec3d axis = (domain_.spin_centre + domain_.node(0, 0, 0, 0)) / steps;
+    const std::array<int, 3>& first = domain_.blocks[l].first;
+    t.rate = static_cast<float>(0.5 * (before + after) * steps);
+    t.change = static_cast<float>((after - before) * steps);
+    t.axis_x = static_cast<float>(axis.x - first[0]);
+    t.axis_y = static_cast<float>(axis.y - first[1]);
+    return t;
+}
+
+/// Of the last step of a block.
+Turning Nest::turning_before(std::size_t l) const {
+    const std::uint64_t steps = std::uint64_t{1} << l, now = levels_[l].step;
+    return turning(l, now < steps ? 0 : now - steps);
+}
+
 void Nest::advance(const std::function<void(std::uint64_t)>& after_step) {
     after_step_ = &after_step;
 #pragma omp parallel num_threads(threads_)
@@ -101,15 +135,16 @@ void Nest::advance_level(std::size_t l) {
     }
     bulk(l);
 
+    const Turning turns = turning(l, level.step);
     const auto fills = static_cast<std::ptrdiff_t>(outermost ? 0 : refinements_[l].fill_tasks());
     const auto reads = static_cast<std::ptrdiff_t>(l == 0 ? 0 : refinements_[l - 1].observe_tasks());
 #pragma omp for schedule(static)
     for (std::ptrdiff_t n = 0; n < fills + reads; ++n) {
         if (n < fills) {
-            refinements_[l].fill(*level.to, level.second ? 1.0f : 0.5f, level.collision.push,
+            refinements_[l].fill(*level.to, level.second ? 1.0f : 0.5f, level.collision.push, turns,
                                  static_cast<std::size_t>(n));
         } else {
-            refinements_[l - 1].observe(*level.from, static_cast<std::size_t>(n - fills));
+            refinements_[l - 1].observe(*level.from, turns, static_cast<std::size_t>(n - fills));
         }
     }
 #pragma omp single
@@ -118,7 +153,7 @@ void Nest::advance_level(std::size_t l) {
         level.step += std::uint64_t{1} << l;
         level.second = !level.second;
         if (outermost && level.step <= domain_.ramp_steps + 2 * steps_at_once()) {
-            fill_stream(level.grid, *level.to, stream_populations(stream(level.step)));
+            fill_far(*level.to, level.step);
         }
         std::swap(level.from, level.to);
         // restrict_to needs the push of the step that this was, so the coarser blocks wait with theirs.
@@ -131,11 +166,14 @@ void Nest::advance_level(std::size_t l) {
     Refinement& border = refinements_[l - 1];
     const auto filters = static_cast<std::ptrdiff_t>(border.filter_tasks());
     const auto writes = static_cast<std::ptrdiff_t>(border.restrict_tasks());
+    const Turning fine_turns = turning_before(l - 1);
 #pragma omp for schedule(static)
-    for (std::ptrdiff_t n = 0; n < filters; ++n) border.filter(*levels_[l - 1].to, static_cast<std::size_t>(n));
+    for (std::ptrdiff_t n = 0; n < filters; ++n) {
+        border.filter(*levels_[l - 1].to, fine_turns, static_cast<std::size_t>(n));
+    }
 #pragma omp for schedule(static)
     for (std::ptrdiff_t n = 0; n < writes; ++n) {
-        border.restrict_to(*level.from, level.collision.push, static_cast<std::size_t>(n));
+        border.restrict_to(*level.from, level.collision.push, turns, static_cast<std::size_t>(n));
     }
 #pragma omp single
     set_push(level, std::uint64_t{1} << l);
@@ -144,7 +182,7 @@ void Nest::advance_level(std::size_t l) {
 void Nest::walls() {
     const auto stretches = static_cast<std::ptrdiff_t>(wall_.stretches());
     Populations& from = *levels_.front().from;
-    const auto motion = static_cast<float>(ramp(static_cast<double>(levels_.front().step)));
+    const auto motion = domain_.turning ? 0.0f : static_cast<float>(ramp(static_cast<double>(levels_.front().step)));
 #pragma omp for schedule(static)
     for (std::ptrdiff_t s = 0; s < stretches; ++s) wall_.gather(from, motion, static_cast<std::size_t>(s));
 #pragma omp for schedule(static)
@@ -155,6 +193,18 @@ void Nest::bulk(std::size_t l) {
     Level& level = levels_[l];
     const Grid& grid = level.grid;
     const bool outermost = l + 1 == levels_.size();
+    if (domain_.turning) {
+        const Turning turns = turning(l, level.step);
+        level.shares->each([&](std::size_t r) {
+            Collision collision = level.collision;
+            if (outermost) collision.relaxation = still_relaxation(r);
+            collide_row(grid, *level.from, *level.to, r, collision, turns);
+            if (l == 0) empty_solid(r);
+            if (outermost) close_row_still(grid, *level.to, r, turns);
+        });
+#pragma omp barrier
+        return;
+    }
     const auto far = stream_populations(stream(level.step + (std::uint64_t{1} << l)));
     level.shares->each([&](std::size_t r) {
         Collision collision = level.collision;
@@ -167,6 +217,14 @@ void Nest::bulk(std::size_t l) {
         if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
     });
 #pragma omp barrier
+}
+
+/// Relaxation times of a row of the outermost block in the turning frame.
+const float* Nest::still_relaxation(std::size_t row) const {
+    const Level& level = levels_.back();
+    const int y = level.grid.row_y(row), z = level.grid.row_z(row);
+    const int away = std::min({y, level.grid.ny - 1 - y, z, level.grid.nz - 1 - z});
+    return level.still_relaxation[std::min(static_cast<std::size_t>(away), level.still_relaxation.size() - 1)].data();
 }
 
 /// Cells inside the body are swept along by the bulk's loop; keep them at rest.
@@ -197,6 +255,10 @@ std::size_t Nest::read_node(std::size_t l, const std::array<int, 3>& at, const F
     // The copy not in use is that of the step before, walls included: what this step pulled from.
     observe(levels_[l].grid, *levels_[l].to, at[0], at[1], at[2], 1,
             static_cast<float>(domain_.relaxation(static_cast<int>(l))), smagorinsky, out);
+    if (domain_.turning) {
+        const Line here{static_cast<float>(at[0]), static_cast<float>(at[1]), 0, 0};
+        to_middle(turning_before(l), here, 1, out[1], out[2]);
+    }
     return l;
 }
 
@@ -259,6 +321,7 @@ void Nest::set(const Source& source) {
         const auto relaxation = static_cast<float>(domain_.relaxation(static_cast<int>(l)));
         const int border = l + 1 == levels_.size() ? 0 : 1, border_z = grid.periodic ? 0 : border;
         const float none[3] = {};
+        const Turning turns = turning_before(l);
 #pragma omp parallel for num_threads(threads_) schedule(dynamic, 1)
         for (int k = -border_z; k < grid.nz + border_z; ++k) {
             std::array<float, field_count> fields{};
@@ -275,6 +338,8 @@ void Nest::set(const Source& source) {
                         continue;
                     }
                     source(domain_.node(static_cast<int>(l), i, j, k), fields);
+                    const Line here{static_cast<float>(i), static_cast<float>(j), 0, 0};
+                    if (turns.on()) from_middle(turns, here, 1, &fields[1], &fields[2]);
                     rebuild(in, 1, static_cast<float>(std::uint64_t{1} << l), relaxation, smagorinsky, none, out);
                     for (int d = 0; d < direction_count; ++d) {
                         level.from->at(d)[cell] = level.to->at(d)[cell] = f[static_cast<std::size_t>(d)];
@@ -285,14 +350,20 @@ void Nest::set(const Source& source) {
         if (l + 1 == levels_.size()) {
             const auto far = stream_populations(stream(level.step));
             for (Populations* p : {level.from.get(), level.to.get()}) {
-                fill_stream(grid, *p, far);
-                for (std::size_t r = 0; r < grid.rows(); ++r) close_row(grid, *p, r, far, domain_.stream_speed > 0);
+                fill_far(*p, level.step);
+                for (std::size_t r = 0; r < grid.rows(); ++r) {
+                    if (domain_.turning) {
+                        close_row_still(grid, *p, r, turns);
+                    } else {
+                        close_row(grid, *p, r, far, domain_.stream_speed > 0);
+                    }
+                }
             }
         }
     }
     for (std::size_t l = 0; l < refinements_.size(); ++l) {
         for (std::size_t n = 0; n < refinements_[l].observe_tasks(); ++n)
-            refinements_[l].observe(*levels_[l + 1].to, n);
+            refinements_[l].observe(*levels_[l + 1].to, turning_before(l + 1), n);
     }
 }
 

@@ -36,6 +36,7 @@ public:
 
     /// Fields (kernel.h) of the last step at a point in finest cells from the lattice's origin, of the finest block that
     /// has it, linear between nodes; strain per step of the finest block. False outside all blocks and inside the body.
+    /// Velocity is that in the body's frame.
     bool sample(const Vec3d& point, std::array<float, field_count>& fields) const;
 
     /// Sets every cell to what `source` says of its place (as `sample`); the clock stands at Domain::first_step then.
@@ -46,7 +47,8 @@ private:
     struct Level {
         Grid grid;
         std::unique_ptr<Populations> from, to;
-        std::vector<float> relaxation;  // for each cell of a row
+        std::vector<float> relaxation;                     // for each cell of a row
+        std::vector<std::vector<float>> still_relaxation;  // outermost, in the turning frame (far_field.h)
         Collision collision;
         std::unique_ptr<Shares> shares;
         float ripple = 0;        // what the push across differs by along a slab's span
@@ -59,10 +61,14 @@ private:
     void walls();
     void bulk(std::size_t level);
     void empty_solid(std::size_t row);
+    const float* still_relaxation(std::size_t row) const;
     double ramp(double step) const;
     double sway(double step) const;
     std::array<float, 3> stream(std::uint64_t step) const;
     void set_push(Level& level, std::uint64_t steps) const;
+    Turning turning(std::size_t level, std::uint64_t step) const;
+    Turning turning_before(std::size_t level) const;
+    void fill_far(Populations& populations, std::uint64_t step) const;
 
     const Domain& domain_;
     Wall& wall_;

@@ -55,6 +55,11 @@ void Picture::add(const Nest& nest) {
                 float speed = std::numeric_limits<float>::quiet_NaN(), pressure = speed;
                 if (nest.sample(place, f)) {
                     const auto stream = static_cast<float>(domain_.lattice_speed);
+                    if (domain_.turning) {  // shown over ground
+                        const Vec3d arm = place - domain_.node(0, 0, 0, 0) - domain_.spin_centre;
+                        f[1] -= static_cast<float>(domain_.spin.z * arm.y);
+                        f[2] += static_cast<float>(domain_.spin.z * arm.x);
+                    }
                     speed = std::sqrt(f[1] * f[1] + f[2] * f[2] + f[3] * f[3]) / stream;
                     // Pressure is a third of the density.
                     pressure = f[0] * (2.0f / 3) / (stream * stream);

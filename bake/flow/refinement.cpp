@@ -33,6 +33,10 @@ std::array<int, 3> Refinement::Face::at(int plane, int u_index, int v_index) con
     return p;
 }
 
+Line Refinement::Face::line_of(const std::array<int, 3>& p) const {
+    return {static_cast<float>(p[0]), static_cast<float>(p[1]), u == 0 ? 1.0f : 0.0f, u == 1 ? 1.0f : 0.0f};
+}
+
 Refinement::Range Refinement::Face::mine(int entering, std::size_t count, bool first_row, bool last_row) const {
     const Direction& c = directions[static_cast<std::size_t>(entering)];
     // It enters through the other axis' face as well: at the low end upwards, at the high end downwards.
@@ -105,7 +109,7 @@ void Refinement::add_face(const Block& fine, const Block& coarse, int axis, bool
     faces_.push_back(std::move(face));
 }
 
-void Refinement::observe(const Populations& coarse, std::size_t task) {
+void Refinement::observe(const Populations& coarse, const Turning& turning, std::size_t task) {
     Face& face = faces_[observe_tasks_[task].face];
     const int v = observe_tasks_[task].v;
     // Rows run along x but for the planes across it.
@@ -117,9 +121,14 @@ void Refinement::observe(const Populations& coarse, std::size_t task) {
         const auto p = face.at(face.coarse, face.u_first + u, face.v_first + v);
         flow::observe(coarse_, coarse, p[0], p[1], p[2], count, coarse_relaxation_, smagorinsky_, fields);
     }
+    if (turning.on()) {
+        to_middle(turning, face.line_of(face.at(face.coarse, face.u_first, face.v_first + v)),
+                  static_cast<std::size_t>(face.nu), face.row(newest_, 1, v), face.row(newest_, 2, v));
+    }
 }
 
-void Refinement::fill(Populations& fine, float share, const float* push, std::size_t task) const {
+void Refinement::fill(Populations& fine, float share, const float* push, const Turning& turning,
+                      std::size_t task) const {
     const Face& face = faces_[fill_tasks_[task].face];
     const int v = fill_tasks_[task].v;
     const auto nu = static_cast<std::size_t>(face.nu), fine_nu = static_cast<std::size_t>(face.fine_nu);
@@ -163,8 +172,9 @@ void Refinement::fill(Populations& fine, float share, const float* push, std::si
 
     std::array<float*, direction_count> out{};
     for (std::size_t i = 0; i < direction_count; ++i) out[i] = rebuilt + i * fine_nu;
-    rebuild(in, fine_nu, 0.5f, fine_relaxation_, smagorinsky_, push, out);
     const auto p = face.at(face.fine, -1, face.wraps ? v : v - 1);
+    if (turning.on()) from_middle(turning, face.line_of(p), fine_nu, fields + fine_nu, fields + 2 * fine_nu);
+    rebuild(in, fine_nu, 0.5f, fine_relaxation_, smagorinsky_, push, out);
     const auto first = static_cast<std::ptrdiff_t>(fine_.index(p[0], p[1], p[2]));
     const std::ptrdiff_t step = face.axis == 0 ? fine_.stride_y() : 1;
     for (const int i : face.inward) {
@@ -175,7 +185,7 @@ void Refinement::fill(Populations& fine, float share, const float* push, std::si
     }
 }
 
-void Refinement::filter(const Populations& fine, std::size_t task) {
+void Refinement::filter(const Populations& fine, const Turning& turning, std::size_t task) {
     Face& face = faces_[filter_tasks_[task].face];
     const int v = filter_tasks_[task].v;
     constexpr int planes = 2 * reach + 1;
@@ -190,6 +200,10 @@ void Refinement::filter(const Populations& fine, std::size_t task) {
         for (std::size_t u = 0; u < read; ++u) {
             const auto p = face.at(face.fine_ring - reach, static_cast<int>(u), v);
             flow::observe(fine_, fine, p[0], p[1], p[2], Grid::lanes, fine_relaxation_, smagorinsky_, fields);
+            if (turning.on()) {
+                const Line along_x{static_cast<float>(p[0]), static_cast<float>(p[1]), 1, 0};
+                to_middle(turning, along_x, planes, fields[1], fields[2]);
+            }
             for (std::size_t f = 0; f < field_count; ++f) {
                 const float* const c = fields[f];
                 line[f * read + u] = filtered(c[0], c[1], c[2], c[3], c[4]);
@@ -203,6 +217,7 @@ void Refinement::filter(const Populations& fine, std::size_t task) {
                 fields[f] = cells + static_cast<std::size_t>(n) * size + f * read;
             const auto p = face.at(face.fine_ring + n - reach, 0, v);
             flow::observe(fine_, fine, p[0], p[1], p[2], read, fine_relaxation_, smagorinsky_, fields);
+            if (turning.on()) to_middle(turning, face.line_of(p), read, fields[1], fields[2]);
         }
         const float *const a = cells, *const b = a + size, *const c = b + size, *const d = c + size,
                            *const e = d + size;
@@ -218,7 +233,7 @@ void Refinement::filter(const Populations& fine, std::size_t task) {
     }
 }
 
-void Refinement::restrict_to(Populations& coarse, const float* push, std::size_t task) const {
+void Refinement::restrict_to(Populations& coarse, const float* push, const Turning& turning, std::size_t task) const {
     const Face& face = faces_[restrict_tasks_[task].face];
     const int v = restrict_tasks_[task].v;  // of the coarse rows kept
     const int fine_v = face.wraps ? v * face.v_scale : 2 * v - 3;
@@ -243,8 +258,9 @@ void Refinement::restrict_to(Populations& coarse, const float* push, std::size_t
     }
     std::array<float*, direction_count> out{};
     for (std::size_t i = 0; i < direction_count; ++i) out[i] = rebuilt + i * count;
-    rebuild(in, count, 2.0f, coarse_relaxation_, smagorinsky_, push, out);
     const auto p = face.at(face.ring, face.u_first + 3, face.v_first + v);
+    if (turning.on()) from_middle(turning, face.line_of(p), count, kept + count, kept + 2 * count);
+    rebuild(in, count, 2.0f, coarse_relaxation_, smagorinsky_, push, out);
     const auto first = static_cast<std::ptrdiff_t>(coarse_.index(p[0], p[1], p[2]));
     const std::ptrdiff_t step = face.axis == 0 ? coarse_.stride_y() : 1;
     for (const int i : face.inward) {

@@ -22,25 +22,26 @@ public:
                float smagorinsky);
 
     // Each of the following is a number of independent tasks, so that threads can share them; no result depends on who
-    // does which.
+    // does which. `turning` is of the step and the block that is read or written; in a frame that turns, velocities pass
+    // as they are in the middle of a step, because a step's force is not the same in both blocks.
 
     /// Before observe: what was new is old.
     void turn() { newest_ = 1 - newest_; }
     std::size_t observe_tasks() const { return observe_tasks_.size(); }
     /// Reads the coarse planes of the step that pulls from `coarse`.
-    void observe(const Populations& coarse, std::size_t task);
+    void observe(const Populations& coarse, const Turning& turning, std::size_t task);
 
     std::size_t fill_tasks() const { return fill_tasks_.size(); }
     /// Fills the fine block's ghosts for the time `share` of a coarse step after the older of the two last planes.
-    void fill(Populations& fine, float share, const float* push, std::size_t task) const;
+    void fill(Populations& fine, float share, const float* push, const Turning& turning, std::size_t task) const;
 
     std::size_t filter_tasks() const { return filter_tasks_.size(); }
     /// Reads the fine step that pulls from `fine` next inside the planes, smoothed to what coarse cells can carry.
-    void filter(const Populations& fine, std::size_t task);
+    void filter(const Populations& fine, const Turning& turning, std::size_t task);
 
     std::size_t restrict_tasks() const { return restrict_tasks_.size(); }
     /// After all of filter: writes the coarse nodes next inside the planes.
-    void restrict_to(Populations& coarse, const float* push, std::size_t task) const;
+    void restrict_to(Populations& coarse, const float* push, const Turning& turning, std::size_t task) const;
 
 private:
     struct Range {
@@ -76,6 +77,8 @@ private:
         /// are left to it. Nodes of a row of `count` to write for a direction.
         Range mine(int entering, std::size_t count, bool first_row, bool last_row) const;
         std::array<int, 3> at(int plane, int along_u, int along_v) const;
+        /// Nodes of a row from `p` on, `step` nodes apart along u.
+        Line line_of(const std::array<int, 3>& p) const;
     };
     struct Task {
         std::size_t face;

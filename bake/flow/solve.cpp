@@ -29,7 +29,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double blockage_factor = 1.8, section_blockage_factor = 0;
 constexpr double least_statistics = 1e-3, least_known = 0.5;  // lengths under which a mean says nothing
 constexpr double section_blockage = 0.01;  // three times the room lowers the drag of sections at Re 100 by so much
-constexpr double grid_share = 0.5;         // of the difference to the run on half the resolution
+constexpr double turning_blockage =
+    0.01;                           // a box of 5 by 3 radii instead of 4 by 2.5 changes the torque by at most that
+constexpr double grid_share = 0.5;  // of the difference to the run on half the resolution
 constexpr std::uint64_t guard_steps = 64;
 constexpr double progress_seconds = 0.3;
 constexpr double picture_every = 0.5;                  // lengths
@@ -133,7 +135,8 @@ private:
     }
 
     void store() {
-        if (!spins_alone()) wall_.limit_friction(sample_, domain_.lattice_speed, domain_.plan.reynolds);
+        if (!spins_alone() || domain_.turning)
+            wall_.limit_friction(sample_, domain_.lattice_speed, domain_.plan.reynolds);
         measure_.push_back(quantity(sample_));
         Load whole;
         for (Load& load : sample_) {
@@ -266,7 +269,8 @@ private:
         series_.uncertainty.statistics =
             average != 0 ? std::max(least_statistics, standard_error(measure_) / std::abs(average)) : 1;
         if (recorded_lengths() < least_known) series_.uncertainty.statistics = 1;
-        series_.uncertainty.blockage = std::max(case_.section ? section_blockage : 1e-3, 0.5 * blockage_share(cd));
+        const double least_blockage = case_.section ? section_blockage : domain_.turning ? turning_blockage : 1e-3;
+        series_.uncertainty.blockage = std::max(least_blockage, 0.5 * blockage_share(cd));
         if (case_.pictures) {
             if (!picture_) {  // it ended early
                 picture_ = std::make_unique<Picture>(domain_);
