@@ -8,6 +8,7 @@
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
 #include "bake/mesh/thickness.h"
+#include "bake/potential/added_mass.h"
 #include "cli/command.h"
 #include "cli/file.h"
 #include "cli/problem_file.h"
@@ -17,13 +18,14 @@ namespace {
 
 struct Options {
     std::string mesh, out;
-    bool json = false;
+    bool json = false, added_mass = false;
+    double density = 1000;
 };
 
 nlohmann::ordered_json vec(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 void print_json(const Options& o, const bake::Repaired& r, const bake::SurfaceProperties& shape,
-                const bake::Thickness& thickness) {
+                const bake::Thickness& thickness, const bake::AddedMass* mass) {
     nlohmann::ordered_json j;
     j["file"] = o.mesh;
     j["triangles"] = r.surface.triangles.size();
@@ -41,7 +43,34 @@ void print_json(const Options& o, const bake::Repaired& r, const bake::SurfacePr
     j["cuts_within"] = r.cuts.within;
     j["cuts_between"] = r.cuts.between;
     j["notes"] = r.notes;
+    if (mass != nullptr) {
+        nlohmann::ordered_json rows;
+        for (std::size_t i = 0; i < 6; ++i)
+            rows.push_back(std::vector<double>(mass->matrix.begin() + static_cast<std::ptrdiff_t>(6 * i),
+                                               mass->matrix.begin() + static_cast<std::ptrdiff_t>(6 * i + 6)));
+        j["added_mass"] = {{"density", o.density},
+                           {"matrix", rows},
+                           {"error", mass->error},
+                           {"buried", mass->buried},
+                           {"triangles", mass->triangles}};
+    }
     std::printf("%s\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+void print_added_mass(const Options& o, const bake::AddedMass& mass) {
+    std::printf("added mass at %.6g kg/m^3, about the mesh's origin, in kg, kg m and kg m^2; estimated error %.1f %%\n",
+                o.density, 100 * mass.error);
+    double most[2] = {};
+    for (std::size_t i = 0; i < 6; ++i) most[i / 3] = std::fmax(most[i / 3], mass.matrix[7 * i]);
+    for (std::size_t i = 0; i < 6; ++i) {
+        std::printf("%10s", i < 3 ? "force" : "torque");
+        std::printf(" %c", "xyz"[i % 3]);
+        for (std::size_t j = 0; j < 6; ++j) {
+            const double x = mass.matrix[6 * i + j], least = 1e-6 * std::sqrt(most[i / 3] * most[j / 3]);
+            std::printf(" %12.5g", std::fabs(x) < least ? 0.0 : x);
+        }
+        std::printf("\n");
+    }
 }
 
 void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, const bake::Thickness& thickness) {
@@ -72,10 +101,18 @@ void run(const Options& o) {
     if (!o.out.empty()) write_file(o.out, bake::write_glb({{"surface", {0.5, 0.5, 0.5, 1}, &repaired.surface}}, "frm"));
     const bake::SurfaceProperties shape = bake::measure(repaired.surface);
     const bake::Thickness thickness = bake::measure_thickness(repaired.surface);
-    if (o.json)
-        print_json(o, repaired, shape, thickness);
-    else
-        print_text(repaired, shape, thickness);
+    bake::AddedMass mass;
+    if (o.added_mass) {
+        bake::AddedMassSettings settings;
+        settings.density = o.density;
+        mass = bake::added_mass(repaired.surface, settings);
+    }
+    if (o.json) {
+        print_json(o, repaired, shape, thickness, o.added_mass ? &mass : nullptr);
+        return;
+    }
+    print_text(repaired, shape, thickness);
+    if (o.added_mass) print_added_mass(o, mass);
 }
 
 }  // namespace
@@ -87,7 +124,8 @@ void add_mesh(CLI::App& app) {
         app.add_subcommand("mesh", "Shows what a bake would make of a mesh: measures, repairs, or why it is refused.");
     command->footer(
         "A refused shape is written to NAME.problem.glb, the place marked red, beside the output file or here.\n"
-        "  frm mesh paddle.glb");
+        "  frm mesh paddle.glb\n"
+        "  frm mesh paddle.glb --added-mass       what the water adds to its inertia; some seconds");
     command->add_option("MESH", o.mesh, "a .glb or .gltf file, in metres")
         ->required()
         ->check(not_empty())
@@ -95,6 +133,13 @@ void add_mesh(CLI::App& app) {
     command->add_option("-o,--out", o.out, "write the repaired surface to this .glb file")
         ->check(not_empty())
         ->type_name("FILE");
+    CLI::Option* added_mass =
+        command->add_flag("--added-mass", o.added_mass,
+                          "the 6x6 added mass in unbounded water without friction, and its estimated error");
+    command->add_option("--density", o.density, "of the fluid of --added-mass, kg/m^3")
+        ->check(density_range())
+        ->capture_default_str()
+        ->needs(added_mass);
     command->add_flag("--json", o.json, "JSON on standard output");
     command->callback([options] { run(*options); });
 }

@@ -1,9 +1,11 @@
 #include "bake/math/cholesky.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "bake/error.h"
+#include "bake/flow/threads.h"
 
 namespace frm::bake {
 namespace {
@@ -23,13 +25,28 @@ double dot(const double* a, const double* b, std::size_t n) {
 
 }  // namespace
 
-Cholesky::Cholesky(std::vector<double> lower, std::size_t size) : factor_(std::move(lower)), size_(size) {
-    for (std::size_t i = 0; i < size; ++i) {
+// By bands of columns: the rows of a band stay in the cache while all rows below are reduced by them, by several threads.
+// Each element is the same sum in the same order, whatever the bands and the threads.
+Cholesky::Cholesky(std::vector<double> lower, std::size_t size, int threads) : factor_(std::move(lower)), size_(size) {
+    constexpr std::size_t band = 32;
+    const auto reduce = [this](std::size_t i, std::size_t j) {
         double* const a = row(factor_, i);
-        for (std::size_t j = 0; j < i; ++j) a[j] = (a[j] - dot(a, row(factor_, j), j)) / row(factor_, j)[j];
-        const double rest = a[i] - dot(a, a, i);
-        if (!(rest > 1e-14 * a[i])) throw BakeError("math: a matrix that should be positive definite is not");
-        a[i] = std::sqrt(rest);
+        a[j] = (a[j] - dot(a, row(factor_, j), j)) / row(factor_, j)[j];
+    };
+    for (std::size_t first = 0; first < size; first += band) {
+        const std::size_t end = std::min(first + band, size);
+        for (std::size_t i = first; i < end; ++i) {
+            for (std::size_t j = first; j < i; ++j) reduce(i, j);
+            double* const a = row(factor_, i);
+            const double rest = a[i] - dot(a, a, i);
+            if (!(rest > 1e-14 * a[i])) throw BakeError("math: a matrix that should be positive definite is not");
+            a[i] = std::sqrt(rest);
+        }
+        const auto n = static_cast<std::ptrdiff_t>(size);
+#pragma omp parallel for num_threads(flow::thread_count(threads)) schedule(dynamic, 8)
+        for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(end); i < n; ++i) {
+            for (std::size_t j = first; j < end; ++j) reduce(static_cast<std::size_t>(i), j);
+        }
     }
 }
 

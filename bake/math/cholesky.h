@@ -11,7 +11,8 @@ namespace frm::bake {
 class Cholesky {
 public:
     /// Takes A's lower half, packed alike. Throws BakeError if A is not positive definite to within rounding.
-    explicit Cholesky(std::vector<double> lower, std::size_t size);
+    /// The same bits for any number of threads (0: OpenMP's own).
+    Cholesky(std::vector<double> lower, std::size_t size, int threads = 1);
 
     /// Replaces b by the solution of A x = b.
     void solve(double* b) const;
