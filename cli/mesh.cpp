@@ -3,11 +3,15 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "bake/mesh/glb_writer.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
 #include "bake/mesh/thickness.h"
+#include "bake/regions/choose.h"
+#include "bake/regions/tessellate.h"
+#include "bake/symmetry/symmetry.h"
 #include "cli/command.h"
 #include "cli/file.h"
 #include "cli/problem_file.h"
@@ -17,13 +21,39 @@ namespace {
 
 struct Options {
     std::string mesh, out;
-    bool json = false;
+    bool json = false, regions = false;
 };
+
+struct Quality {
+    const char* name;
+    double error;
+};
+
+constexpr Quality qualities[] = {
+    {"draft", bake::kDraftRegionError}, {"standard", bake::kStandardRegionError}, {"high", bake::kHighRegionError}};
+
+struct Choice {
+    const char* quality;
+    double budget;
+    bake::ChosenRegions chosen;
+};
+
+/// What a bake of each quality would choose, on the triangles that it works on.
+std::vector<Choice> choose(const bake::Surface& surface) {
+    std::vector<Choice> result;
+    const bake::Surface sampled = bake::sample_triangles(surface);
+    for (const Quality& q : qualities) {
+        bake::RegionBudget budget;
+        budget.error = q.error;
+        result.push_back({q.name, q.error, bake::choose_regions(sampled, budget)});
+    }
+    return result;
+}
 
 nlohmann::ordered_json vec(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 void print_json(const Options& o, const bake::Repaired& r, const bake::SurfaceProperties& shape,
-                const bake::Thickness& thickness) {
+                const bake::Thickness& thickness, const bake::Symmetry& symmetry, const std::vector<Choice>& choices) {
     nlohmann::ordered_json j;
     j["file"] = o.mesh;
     j["triangles"] = r.surface.triangles.size();
@@ -38,13 +68,47 @@ void print_json(const Options& o, const bake::Repaired& r, const bake::SurfacePr
     j["thinnest"] = thickness.thinnest;
     j["thinnest_at"] = vec(thickness.thinnest_at);
     j["median_thickness"] = thickness.median;
+    auto& s = j["symmetry"];
+    s["kind"] = bake::name_of(symmetry.kind);
+    if (symmetry.kind == bake::SymmetryKind::finite) {
+        s["elements"] = nlohmann::ordered_json::array();
+        for (const bake::Matrix3& g : symmetry.elements)
+            s["elements"].push_back({vec(g.row[0]), vec(g.row[1]), vec(g.row[2])});
+    } else if (symmetry.kind != bake::SymmetryKind::spherical) {
+        s["axis"] = vec(symmetry.axis);
+    }
+    s["tolerance"] = symmetry.tolerance;
+    s["worst"] = symmetry.worst;
+    if (o.regions) j["regions"] = nlohmann::ordered_json::array();
+    for (const Choice& c : choices) {
+        const bake::RegionErrors& e = c.chosen.errors;
+        j["regions"].push_back({{"quality", c.quality},
+                                {"budget", c.budget},
+                                {"count", c.chosen.regions.count},
+                                {"within_budget", c.chosen.reached},
+                                {"error", e.whole},
+                                {"wet_ratio", e.wet_ratio},
+                                {"velocity", e.velocity},
+                                {"arm", e.arm}});
+    }
     j["cuts_within"] = r.cuts.within;
     j["cuts_between"] = r.cuts.between;
     j["notes"] = r.notes;
     std::printf("%s\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, const bake::Thickness& thickness) {
+void print_regions(const std::vector<Choice>& choices) {
+    std::printf("regions    quality    budget  sources    error   wet ratio   velocity   arm\n");
+    for (const Choice& c : choices) {
+        const bake::RegionErrors& e = c.chosen.errors;
+        std::printf("           %-8s  %5.1f %%    %5u  %5.1f %%     %5.1f %%    %5.1f %%   %5.1f %%%s\n", c.quality,
+                    100 * c.budget, c.chosen.regions.count, 100 * e.whole, 100 * e.wet_ratio, 100 * e.velocity,
+                    100 * e.arm, c.chosen.reached ? "" : "   more than the budget: all that there may be");
+    }
+}
+
+void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, const bake::Thickness& thickness,
+                const bake::Symmetry& symmetry, const std::vector<Choice>& choices) {
     const Vec3d size = shape.high - shape.low;
     // What is left of rounding, to be read as the zero that it is.
     const auto tidy = [&](double x) { return std::fabs(x) < 1e-9 * length(size) ? 0.0 : x; };
@@ -60,6 +124,8 @@ void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, c
             thickness.thinnest * 1000, thickness.thinnest_at.x, thickness.thinnest_at.y, thickness.thinnest_at.z,
             thickness.median * 1000);
     }
+    std::printf("symmetry   %s\n", bake::describe(symmetry).c_str());
+    if (!choices.empty()) print_regions(choices);
     for (const std::string& note : r.notes) std::printf("note       %s\n", note.c_str());
     if (r.notes.empty()) std::printf("repairs    none needed\n");
 }
@@ -72,10 +138,12 @@ void run(const Options& o) {
     if (!o.out.empty()) write_file(o.out, bake::write_glb({{"surface", {0.5, 0.5, 0.5, 1}, &repaired.surface}}, "frm"));
     const bake::SurfaceProperties shape = bake::measure(repaired.surface);
     const bake::Thickness thickness = bake::measure_thickness(repaired.surface);
+    const bake::Symmetry symmetry = bake::find_symmetry(repaired.surface);
+    const std::vector<Choice> choices = o.regions ? choose(repaired.surface) : std::vector<Choice>{};
     if (o.json)
-        print_json(o, repaired, shape, thickness);
+        print_json(o, repaired, shape, thickness, symmetry, choices);
     else
-        print_text(repaired, shape, thickness);
+        print_text(repaired, shape, thickness, symmetry, choices);
 }
 
 }  // namespace
@@ -87,7 +155,11 @@ void add_mesh(CLI::App& app) {
         app.add_subcommand("mesh", "Shows what a bake would make of a mesh: measures, repairs, or why it is refused.");
     command->footer(
         "A refused shape is written to NAME.problem.glb, the place marked red, beside the output file or here.\n"
-        "  frm mesh paddle.glb");
+        "The errors of regions are shares of force and torque of a body that turns half out of the water: in all, and "
+        "by\n"
+        "one wet ratio, one velocity, one point of attack for a region.\n"
+        "  frm mesh paddle.glb\n"
+        "  frm mesh paddle.glb --regions");
     command->add_option("MESH", o.mesh, "a .glb or .gltf file, in metres")
         ->required()
         ->check(not_empty())
@@ -95,6 +167,8 @@ void add_mesh(CLI::App& app) {
     command->add_option("-o,--out", o.out, "write the repaired surface to this .glb file")
         ->check(not_empty())
         ->type_name("FILE");
+    command->add_flag("--regions", o.regions,
+                      "also how many haptic regions each quality needs, and their errors (docs/regions.md)");
     command->add_flag("--json", o.json, "JSON on standard output");
     command->callback([options] { run(*options); });
 }
