@@ -3,12 +3,16 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "bake/mesh/glb_writer.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
 #include "bake/mesh/thickness.h"
 #include "bake/potential/added_mass.h"
+#include "bake/regions/choose.h"
+#include "bake/regions/tessellate.h"
+#include "bake/symmetry/symmetry.h"
 #include "cli/command.h"
 #include "cli/file.h"
 #include "cli/problem_file.h"
@@ -18,14 +22,41 @@ namespace {
 
 struct Options {
     std::string mesh, out;
-    bool json = false, added_mass = false;
+    bool json = false, regions = false, added_mass = false;
     double density = 1000;
 };
+
+struct Quality {
+    const char* name;
+    double error;
+};
+
+constexpr Quality qualities[] = {
+    {"draft", bake::kDraftRegionError}, {"standard", bake::kStandardRegionError}, {"high", bake::kHighRegionError}};
+
+struct Choice {
+    const char* quality;
+    double budget;
+    bake::ChosenRegions chosen;
+};
+
+/// What a bake of each quality would choose, on the triangles that it works on.
+std::vector<Choice> choose(const bake::Surface& surface) {
+    std::vector<Choice> result;
+    const bake::Surface sampled = bake::sample_triangles(surface);
+    for (const Quality& q : qualities) {
+        bake::RegionBudget budget;
+        budget.error = q.error;
+        result.push_back({q.name, q.error, bake::choose_regions(sampled, budget)});
+    }
+    return result;
+}
 
 nlohmann::ordered_json vec(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 void print_json(const Options& o, const bake::Repaired& r, const bake::SurfaceProperties& shape,
-                const bake::Thickness& thickness, const bake::AddedMass* mass) {
+                const bake::Thickness& thickness, const bake::Symmetry& symmetry, const std::vector<Choice>& choices,
+                const bake::AddedMass* mass) {
     nlohmann::ordered_json j;
     j["file"] = o.mesh;
     j["triangles"] = r.surface.triangles.size();
@@ -40,6 +71,29 @@ void print_json(const Options& o, const bake::Repaired& r, const bake::SurfacePr
     j["thinnest"] = thickness.thinnest;
     j["thinnest_at"] = vec(thickness.thinnest_at);
     j["median_thickness"] = thickness.median;
+    auto& s = j["symmetry"];
+    s["kind"] = bake::name_of(symmetry.kind);
+    if (symmetry.kind == bake::SymmetryKind::finite) {
+        s["elements"] = nlohmann::ordered_json::array();
+        for (const bake::Matrix3& g : symmetry.elements)
+            s["elements"].push_back({vec(g.row[0]), vec(g.row[1]), vec(g.row[2])});
+    } else if (symmetry.kind != bake::SymmetryKind::spherical) {
+        s["axis"] = vec(symmetry.axis);
+    }
+    s["tolerance"] = symmetry.tolerance;
+    s["worst"] = symmetry.worst;
+    if (o.regions) j["regions"] = nlohmann::ordered_json::array();
+    for (const Choice& c : choices) {
+        const bake::RegionErrors& e = c.chosen.errors;
+        j["regions"].push_back({{"quality", c.quality},
+                                {"budget", c.budget},
+                                {"count", c.chosen.regions.count},
+                                {"within_budget", c.chosen.reached},
+                                {"error", e.whole},
+                                {"wet_ratio", e.wet_ratio},
+                                {"velocity", e.velocity},
+                                {"arm", e.arm}});
+    }
     j["cuts_within"] = r.cuts.within;
     j["cuts_between"] = r.cuts.between;
     j["notes"] = r.notes;
@@ -73,7 +127,18 @@ void print_added_mass(const Options& o, const bake::AddedMass& mass) {
     }
 }
 
-void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, const bake::Thickness& thickness) {
+void print_regions(const std::vector<Choice>& choices) {
+    std::printf("regions    quality    budget  sources    error   wet ratio   velocity   arm\n");
+    for (const Choice& c : choices) {
+        const bake::RegionErrors& e = c.chosen.errors;
+        std::printf("           %-8s  %5.1f %%    %5u  %5.1f %%     %5.1f %%    %5.1f %%   %5.1f %%%s\n", c.quality,
+                    100 * c.budget, c.chosen.regions.count, 100 * e.whole, 100 * e.wet_ratio, 100 * e.velocity,
+                    100 * e.arm, c.chosen.reached ? "" : "   more than the budget: all that there may be");
+    }
+}
+
+void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, const bake::Thickness& thickness,
+                const bake::Symmetry& symmetry, const std::vector<Choice>& choices) {
     const Vec3d size = shape.high - shape.low;
     // What is left of rounding, to be read as the zero that it is.
     const auto tidy = [&](double x) { return std::fabs(x) < 1e-9 * length(size) ? 0.0 : x; };
@@ -89,6 +154,8 @@ void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, c
             thickness.thinnest * 1000, thickness.thinnest_at.x, thickness.thinnest_at.y, thickness.thinnest_at.z,
             thickness.median * 1000);
     }
+    std::printf("symmetry   %s\n", bake::describe(symmetry).c_str());
+    if (!choices.empty()) print_regions(choices);
     for (const std::string& note : r.notes) std::printf("note       %s\n", note.c_str());
     if (r.notes.empty()) std::printf("repairs    none needed\n");
 }
@@ -101,6 +168,8 @@ void run(const Options& o) {
     if (!o.out.empty()) write_file(o.out, bake::write_glb({{"surface", {0.5, 0.5, 0.5, 1}, &repaired.surface}}, "frm"));
     const bake::SurfaceProperties shape = bake::measure(repaired.surface);
     const bake::Thickness thickness = bake::measure_thickness(repaired.surface);
+    const bake::Symmetry symmetry = bake::find_symmetry(repaired.surface);
+    const std::vector<Choice> choices = o.regions ? choose(repaired.surface) : std::vector<Choice>{};
     bake::AddedMass mass;
     if (o.added_mass) {
         bake::AddedMassSettings settings;
@@ -108,10 +177,10 @@ void run(const Options& o) {
         mass = bake::added_mass(repaired.surface, settings);
     }
     if (o.json) {
-        print_json(o, repaired, shape, thickness, o.added_mass ? &mass : nullptr);
+        print_json(o, repaired, shape, thickness, symmetry, choices, o.added_mass ? &mass : nullptr);
         return;
     }
-    print_text(repaired, shape, thickness);
+    print_text(repaired, shape, thickness, symmetry, choices);
     if (o.added_mass) print_added_mass(o, mass);
 }
 
@@ -124,7 +193,11 @@ void add_mesh(CLI::App& app) {
         app.add_subcommand("mesh", "Shows what a bake would make of a mesh: measures, repairs, or why it is refused.");
     command->footer(
         "A refused shape is written to NAME.problem.glb, the place marked red, beside the output file or here.\n"
+        "The errors of regions are shares of force and torque of a body that turns half out of the water: in all, and "
+        "by\n"
+        "one wet ratio, one velocity, one point of attack for a region.\n"
         "  frm mesh paddle.glb\n"
+        "  frm mesh paddle.glb --regions\n"
         "  frm mesh paddle.glb --added-mass       what the water adds to its inertia; some seconds");
     command->add_option("MESH", o.mesh, "a .glb or .gltf file, in metres")
         ->required()
@@ -140,6 +213,8 @@ void add_mesh(CLI::App& app) {
         ->check(density_range())
         ->capture_default_str()
         ->needs(added_mass);
+    command->add_flag("--regions", o.regions,
+                      "also how many haptic regions each quality needs, and their errors (docs/regions.md)");
     command->add_flag("--json", o.json, "JSON on standard output");
     command->callback([options] { run(*options); });
 }

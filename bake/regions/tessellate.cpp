@@ -146,4 +146,9 @@ Tessellation tessellate(const Surface& surface, double longest_edge, std::uint32
     return bisection.take();
 }
 
+Surface sample_triangles(const Surface& surface, std::uint32_t most_triangles) {
+    const SurfaceProperties shape = measure(surface);
+    return tessellate(surface, length(shape.high - shape.low) / 24, most_triangles).surface;
+}
+
 }  // namespace frm::bake

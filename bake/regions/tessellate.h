@@ -20,4 +20,8 @@ struct Tessellation {
 /// below half of the smallest it came from. Every edge of `surface` must have exactly two triangles (see repair()).
 Tessellation tessellate(const Surface& surface, double longest_edge, std::uint32_t most_triangles);
 
+/// The triangles that a bake of the surface works on: no longer than a 24th of the bounding box's diagonal, so that a
+/// tick sees the water rise along the body, and no more than `most_triangles` unless the surface has more.
+Surface sample_triangles(const Surface& surface, std::uint32_t most_triangles = 2000);
+
 }  // namespace frm::bake

@@ -172,7 +172,8 @@ PrincipalAxes principal_axes(const Surface& surface, const Vec3d& centre) {
 }
 
 std::vector<Vec3d> stationary_axes(const Surface& surface, const Vec3d& centre, std::size_t most) {
-    // Starts evenly over the upper half of a sphere (Fibonacci); an icosahedron's 31 axes are 18 degrees apart at least.
+    // Starts evenly over the upper half of a sphere (Fibonacci); an icosahedron's 31 axes are at least 18 degrees
+    // apart.
     constexpr int starts = 400;
     const SixthMoment f(surface, centre);
     std::vector<Vec3d> found;

@@ -28,7 +28,8 @@ double radius_about(const Surface& surface, const Vec3d& centre, const Vec3d& ax
     return largest;
 }
 
-// By the n-th part of a turn about the axis, then mirrored across it if so told: n = 1 is a mirror, n = 2 the inversion.
+// By the n-th part of a turn about the axis, then mirrored across it if so told: n = 1 is a mirror then, n = 2 the
+// inversion.
 struct Candidate {
     Vec3d axis;
     int turns;

@@ -8,7 +8,7 @@ from conftest import PROGRAM
 OPTIONS = {
     "bake": ["MESH", "--out", "--quality", "draft|standard|high", "--speed", "--directions", "--sources",
              "--resolution", "--threads", "--density", "--viscosity", "--json"],
-    "mesh": ["MESH", "--out", "--json"],
+    "mesh": ["MESH", "--out", "--regions", "--json"],
     "info": ["FILE", "--json"],
     "verify": ["FILE", "--json", "--against"],
     "flow": ["MESH", "--direction", "--speed", "--viscosity", "--density", "--section", "--length",

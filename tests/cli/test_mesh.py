@@ -98,8 +98,25 @@ def test_what_it_says_of_a_box(good, box):
     assert j["area"] == pytest.approx(0.52) and j["thinnest"] == pytest.approx(0.2)
     text = good("mesh", box)
     assert text.err == ""
-    for words in ("0.4 x 0.3 x 0.2 m", "12 triangles", "1 closed piece\n", "0.024 m^3", "200 mm", "none needed"):
+    for words in ("0.4 x 0.3 x 0.2 m", "12 triangles", "1 closed piece\n", "0.024 m^3", "200 mm", "none needed",
+                  "8 elements: 4 rotations, 4 reflections"):
         assert words in text.out
+    assert j["symmetry"]["kind"] == "finite" and len(j["symmetry"]["elements"]) == 8
+    assert j["symmetry"]["elements"][0] == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert j["symmetry"]["worst"] <= j["symmetry"]["tolerance"] < 0.001
+    assert "regions" not in j and "quality" not in text.out
+
+
+def test_the_regions_that_it_needs(good, box):
+    choices = good("mesh", box, "--regions", "--json").json["regions"]
+    assert [c["quality"] for c in choices] == ["draft", "standard", "high"]
+    assert 6 <= choices[0]["count"] < choices[1]["count"] < choices[2]["count"]
+    lines = [line.split() for line in good("mesh", box, "--regions").out.splitlines()]
+    for c in choices:
+        assert c["within_budget"] and c["error"] <= c["budget"]
+        assert max(c["wet_ratio"], c["velocity"], c["arm"]) <= c["error"]  # so it is for a box; not in general
+        line, = [x for x in lines if x and x[0] == c["quality"]]
+        assert line[3] == str(c["count"]) and float(line[4]) == pytest.approx(100 * c["error"], abs=0.06)
 
 
 @pytest.mark.parametrize("node, volume, low", [
