@@ -4,113 +4,166 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
+#include "bake/directions/fluctuations.h"
+#include "bake/directions/region_forces.h"
 #include "bake/map/fill.h"
-#include "bake/series/periodic.h"
+#include "bake/potential/added_mass.h"
+#include "bake/spin_table.h"
 
 namespace frm::bake {
 namespace {
 
-constexpr double amplitude_threshold = 2e-4;  ///< of the mean force on the whole object: harmonics below are dropped
-constexpr double quantisation_budget = 2e-3;  ///< of the peak force
+constexpr double quantisation_budget = 5e-3;  ///< of the peak force
 
-/// One direction's series, [samples][regions][3], made periodic source by source and component by component; the means
-/// go to the tables' place for this direction.
-Fluctuation add_direction(Tables& tables, std::size_t direction, const FlowSeries& flow, const BakePlan& plan, double speed) {
-    const std::uint32_t regions = flow.regions;
-    // The solver's interval is a whole number of its steps, so that a period is a whole number of intervals only
-    // nearly.
-    const double period_time = plan.period * plan.reference_length / speed;
-    const auto period_samples = 2 * static_cast<std::uint32_t>(std::lround(0.5 * period_time / flow.interval));
-    Vec3d whole;
-    for (std::size_t i = 0; i < flow.pressure.size(); ++i)
-        whole[static_cast<int>(i % 3)] += static_cast<double>(flow.pressure[i] + flow.friction[i]) / flow.samples;
-    const PeriodicSpec spec{std::min(period_samples, flow.samples / 2 * 2), plan.samples, plan.harmonics,
-                            amplitude_threshold * length(whole) / std::sqrt(static_cast<double>(regions))};
+/// The streams of one speed and what they found.
+struct Streams {
+    std::vector<const TaskResult*> results;
+    std::vector<FlowMeans> means;
+    std::vector<Vec3d> directions;
+};
 
-    Fluctuation out(std::size_t{regions} * plan.samples * Map::components);
-    std::vector<float> signal(flow.samples);
-    for (std::uint32_t l = 0; l < regions; ++l) {
-        SourceForce& mean = tables.mean[direction * regions + l];
-        for (std::uint32_t c = 0; c < Map::components; ++c) {
-            const std::vector<float>& from = c < 3 ? flow.pressure : flow.friction;
-            for (std::uint32_t s = 0; s < flow.samples; ++s)
-                signal[s] = from[(std::size_t{s} * regions + l) * 3 + c % 3];
-            const PeriodicSeries series = make_periodic(signal, spec);
-            (c < 3 ? mean.pressure : mean.friction)[static_cast<int>(c % 3)] = static_cast<float>(series.mean);
-            for (std::uint32_t s = 0; s < plan.samples; ++s)
-                out[(std::size_t{l} * plan.samples + s) * Map::components + c] = series.fluctuation[s];
-        }
+Streams streams_at(const BakePlan& plan, const std::vector<TaskResult>& results, double speed) {
+    Streams out;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        const Task& task = plan.tasks[k];
+        if (task.kind != TaskKind::stream || task.flow.speed != speed) continue;
+        out.results.push_back(&results[k]);
+        out.means.push_back(means_of(results[k]));
+        out.directions.push_back(task.flow.direction);
     }
     return out;
 }
 
-DirectionReport describe(const FlowSeries& flow, const FlowCase& flow_case) {
-    double drag = 0;
-    for (std::size_t i = 0; i < flow.pressure.size(); ++i)
-        drag += static_cast<double>(flow.pressure[i] + flow.friction[i]) * flow_case.direction[static_cast<int>(i % 3)];
-    drag /= flow.samples;
-    const double unit = 0.5 * flow_case.density * flow_case.speed * flow_case.speed * flow.plan.projected_area;
-    return {flow_case.direction, drag / unit, flow.uncertainty.total()};
+void add_means(Tables& tables, const BakePlan& plan, const RegionForces& forces) {
+    for (std::uint32_t d = 0; d < plan.directions.count(); ++d)
+        for (const PatchForce& f : forces.mean(plan.directions.direction(d)))
+            tables.mean.push_back({Vec3f(f.pressure), Vec3f(f.friction)});
+}
+
+FluctuationSpec spec_of(const BakePlan& plan, const Streams& streams) {
+    FluctuationSpec spec;
+    // The solver's interval is a whole number of its steps, so that a period is a whole number of intervals only
+    // nearly.
+    const double period_time = plan.period * plan.reference_length / plan.options.speed;
+    const TaskResult& first = *streams.results.front();
+    spec.period = std::min(2 * static_cast<std::uint32_t>(std::lround(0.5 * period_time / first.interval)),
+                           first.samples / 2 * 2);
+    spec.samples = plan.samples;
+    spec.harmonics = plan.harmonics;
+    double largest = 0;
+    for (const FlowMeans& means : streams.means) largest = std::max(largest, length(means.force));
+    spec.threshold = plan.options.threshold * largest / std::sqrt(static_cast<double>(plan.regions.count));
+    return spec;
+}
+
+BakeReport::Flow describe(const Task& task, const TaskResult& result) {
+    BakeReport::Flow out;
+    out.name = task.name;
+    out.uncertainty = result.uncertainty.total();
+    const FlowCase& flow = task.flow;
+    if (task.kind == TaskKind::spin) {
+        out.speed = length(flow.spin);
+        out.direction = flow.spin / out.speed;
+        return out;
+    }
+    out.direction = flow.direction;
+    out.speed = flow.speed;
+    const double unit = 0.5 * flow.density * flow.speed * flow.speed * result.plan.projected_area;
+    out.drag_coefficient = dot(means_of(result).force, flow.direction) / unit;
+    return out;
 }
 
 // Wall time, thread count and machine are left out: the same mesh and options give the same file.
 std::string provenance(const BakePlan& plan, const std::vector<TaskResult>& results, const BakeReport& report) {
-    const BakeOptions& options = plan.options;
     nlohmann::ordered_json j;
+    const BakeOptions& options = plan.options;
     j["mesh"] = options.mesh.substr(options.mesh.find_last_of('/') + 1);
     j["mesh_hash"] = plan.mesh_hash;
     if (options.scale != 1) j["scale"] = options.scale;
     j["quality"] = options.quality == Quality::draft ? "draft" : options.quality == Quality::high ? "high" : "standard";
-    j["solver"] = "lattice Boltzmann D3Q19, regularised, Smagorinsky, interpolated bounce-back, nested blocks (docs/flow.md)";
+    j["solver"] =
+        "lattice Boltzmann D3Q19, regularised, Smagorinsky, interpolated bounce-back, nested blocks (docs/flow.md)";
     j["resolution"] = plan.tasks.front().flow.resolution;
     j["start_up_lengths"] = plan.start_up;
     j["period_lengths"] = plan.period;
     j["harmonics"] = plan.harmonics;
+    j["symmetry"] = {{"kind", name_of(plan.symmetry.kind)}, {"isometries", plan.symmetry.elements.size()}};
     j["notes"] = plan.notes;
-    for (std::size_t d = 0; d < report.directions.size(); ++d) {
-        const DirectionReport& r = report.directions[d];
-        const FlowPlan& flow = results[d].plan;
-        j["directions"].push_back({{"direction", {r.direction.x, r.direction.y, r.direction.z}},
-                                   {"drag_coefficient", r.drag_coefficient},
-                                   {"uncertainty", r.uncertainty},
-                                   {"projected_area", flow.projected_area},
-                                   {"reynolds_solved", flow.reynolds_solved},
-                                   {"blockage", flow.blockage},
-                                   {"cells", flow.cells},
-                                   {"steps", flow.steps}});
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        const BakeReport::Flow& flow = report.flows[k];
+        const FlowPlan& cost = results[k].plan;
+        const bool spin = plan.tasks[k].kind == TaskKind::spin;
+        j[spin ? "spins" : "directions"].push_back(
+            {{"direction", {flow.direction.x, flow.direction.y, flow.direction.z}},
+             {spin ? "rate" : "speed", flow.speed},
+             {"drag_coefficient", flow.drag_coefficient},
+             {"uncertainty", flow.uncertainty},
+             {"projected_area", cost.projected_area},
+             {"reynolds_solved", cost.reynolds_solved},
+             {"blockage", cost.blockage},
+             {"cells", cost.cells},
+             {"steps", cost.steps}});
     }
     return j.dump();
 }
 
 }  // namespace
 
-std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult>& results, BakeReport& report) {
+std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult>& results, BakeReport& report,
+                              Tables* raw) {
     const BakeOptions& options = plan.options;
     auto map = std::make_unique<Map>();
     fill_surface(*map, plan.surface, plan.regions);
-    map->directions = map->fluctuation_directions = plan.directions;
+    map->directions = plan.directions;
+    map->fluctuation_directions = plan.fluctuation_directions;
     map->samples = plan.samples;
+    for (const double speed : plan.speeds) map->speeds.push_back(static_cast<float>(speed));
 
-    Tables tables;
-    tables.mean.resize(results.size() * plan.regions.count);
-    double reynolds_solved = options.speed * plan.reference_length / options.viscosity;
-    for (std::size_t d = 0; d < results.size(); ++d) {
-        tables.fluctuation.push_back(add_direction(tables, d, results[d], plan, options.speed));
-        report.directions.push_back(describe(results[d], plan.tasks[d].flow));
-        reynolds_solved = std::min(reynolds_solved, results[d].plan.reynolds_solved);
+    MapFacts& facts = map->facts;
+    const double reynolds = options.speed * plan.reference_length / options.viscosity;
+    double solved = reynolds;
+    report = {};
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        report.flows.push_back(describe(plan.tasks[k], results[k]));
+        if (plan.tasks[k].kind != TaskKind::stream || plan.tasks[k].flow.speed != options.speed) continue;
+        solved = std::min(solved, results[k].plan.reynolds_solved);
+        report.uncertainty = std::max(report.uncertainty, report.flows[k].uncertainty);
     }
 
-    map->facts.base_speed = static_cast<float>(options.speed);
-    map->facts.period = static_cast<float>(plan.period * plan.reference_length / options.speed);
-    map->facts.density = static_cast<float>(options.density);
-    map->facts.viscosity = static_cast<float>(options.viscosity);
-    map->facts.reference_length = static_cast<float>(plan.reference_length);
-    map->facts.reynolds = static_cast<float>(options.speed * plan.reference_length / options.viscosity);
-    map->facts.reynolds_solved = std::min(map->facts.reynolds, static_cast<float>(reynolds_solved));
-    map->speeds.assign(1, map->facts.base_speed);
+    const Carrier carrier{plan.surface, plan.patches, plan.regions, plan.symmetry};
+    Tables tables;
+    for (const double speed : plan.speeds) {
+        const Streams streams = streams_at(plan, results, speed);
+        const RegionForces forces(carrier, streams.means, streams.directions, plan.reference_length, plan.spacing);
+        add_means(tables, plan, forces);
+        if (speed != options.speed) continue;
+        report.direction_errors = forces.known().errors();
+        tables.fluctuation = fluctuations(forces, streams.results, plan.regions.count, plan.fluctuation_directions,
+                                          spec_of(plan, streams));
+    }
+
+    facts.base_speed = static_cast<float>(options.speed);
+    facts.period = static_cast<float>(plan.period * plan.reference_length / options.speed);
+    facts.density = static_cast<float>(options.density);
+    facts.viscosity = static_cast<float>(options.viscosity);
+    facts.reference_length = static_cast<float>(plan.reference_length);
+    facts.reynolds = static_cast<float>(reynolds);
+    facts.reynolds_solved = std::min(facts.reynolds, static_cast<float>(solved));
+    facts.direction_error_rms = static_cast<float>(report.direction_errors.rms);
+    facts.direction_error_worst = static_cast<float>(report.direction_errors.worst);
+    facts.uncertainty = static_cast<float>(report.uncertainty);
+    if (options.added_mass) {
+        map->added_mass = added_mass(plan.surface, {options.density}).matrix;
+        map->has_added_mass = true;
+    }
     fill_tables(*map, tables, quantisation_budget);
+    if (plan.spin_rate > 0) {
+        map->complete();  // the local streams are looked up in it
+        fill_spin(*map, plan, results, carrier);
+    }
     map->provenance = provenance(plan, results, report);
     map->complete();
+    if (raw) *raw = std::move(tables);
     return map;
 }
 

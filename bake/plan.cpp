@@ -6,35 +6,48 @@
 #include <iterator>
 
 #include "bake/bake.h"
+#include "bake/directions/known.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
+#include "bake/regions/choose.h"
 #include "bake/regions/regions.h"
 #include "bake/regions/tessellate.h"
 #include "bake/series/periodic.h"
+#include "bake/spin_table.h"
+#include "bake/symmetry/symmetry.h"
+#include "bake/tasks/forces.h"
 #include "core/math/hash.h"
 
 namespace frm::bake {
 namespace {
 
 struct Preset {
-    std::uint32_t directions, sources;
+    /// Of the first directions, and of the map's fluctuations: the largest that symmetry makes no more flows of than
+    /// `flows`, between these.
+    std::uint32_t least_frequency, most_frequency, flows;
     double cells, start_up, period;  ///< cells and lengths in reference lengths
+    double region_error;             ///< see choose_regions()
+    DirectionErrors budget;          ///< shares of the largest force
+    std::uint32_t mean_frequency;    ///< of the directions that the map stores means for
 };
 
 Preset preset(Quality quality) {
     switch (quality) {
         case Quality::draft:
-            return {18, 40, 12, 6, 8};
+            return {2, 4, 18, 12, 6, 8, kDraftRegionError, {0, 0}, 6};
         case Quality::high:
-            return {102, 80, 36, 12, 40};
+            return {4, 4, 0, 36, 12, 40, kHighRegionError, {0.03, 0.08}, 10};
         default:
-            return {38, 40, 24, 10, 20};
+            return {3, 3, 0, 24, 10, 20, kStandardRegionError, {0.06, 0.15}, 8};
     }
 }
 
-constexpr double overlap_share = 0.25;        ///< of the period, faded into its beginning
-constexpr double harmonics_per_length = 2;    ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
-constexpr double longest_edges = 24;  ///< the sample triangles' longest edge: the bounding box's diagonal over this
+constexpr double overlap_share = 0.25;      ///< of the period, faded into its beginning
+constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
+constexpr double most_more = 0.5;           ///< directions added at most, as a share of the first ones
+constexpr std::uint32_t round_size = 4;     ///< directions added at a time
+// Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
+constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5;
 
 std::string mesh_hash(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -46,6 +59,59 @@ std::string mesh_hash(const std::string& path) {
 
 void require(bool good, const std::string& text) {
     if (!good) throw BakeError(text);
+}
+
+void add_task(BakePlan& plan, TaskKind kind, std::string name, const FlowCase& flow) {
+    Task task{std::move(name), kind, flow, plan_flow(plan.surface, flow)};
+    const std::string& warning = task.cost.warning;
+    if (!warning.empty() && std::find(plan.notes.begin(), plan.notes.end(), warning) == plan.notes.end())
+        plan.notes.push_back(warning);
+    plan.tasks.push_back(std::move(task));
+}
+
+FlowCase base_case(const BakePlan& plan) {
+    FlowCase c;
+    c.density = plan.options.density;
+    c.viscosity = plan.options.viscosity;
+    c.resolution = plan.options.resolution > 0 ? plan.options.resolution : preset(plan.options.quality).cells;
+    c.reference_length = plan.reference_length;
+    c.start_up = plan.start_up;
+    c.duration = plan.period + plan.overlap;
+    c.pictures = true;
+    return c;
+}
+
+void add_stream(BakePlan& plan, const Vec3d& direction, double speed) {
+    FlowCase c = base_case(plan);
+    c.direction = direction;
+    c.speed = speed;
+    std::string name = "direction";
+    for (int i = 0; i < 3; ++i) {
+        char text[16];
+        std::snprintf(text, sizeof text, " %.2f", direction[i] + 0.0);
+        name += text;
+    }
+    if (speed != plan.options.speed) {
+        char text[32];
+        std::snprintf(text, sizeof text, " at %g m/s", speed);
+        name += text;
+    }
+    add_task(plan, TaskKind::stream, std::move(name), c);
+}
+
+/// Turns so fast that the fastest point moves at the base speed.
+void add_spins(BakePlan& plan, const SurfaceProperties& shape) {
+    double radius = 0;
+    for (const Vec3d& v : plan.surface.vertices) radius = std::max(radius, length(v - shape.centroid));
+    plan.spin_rate = plan.options.speed / radius;
+    for (const Vec3d& axis : distinct_spins(plan.symmetry)) {
+        FlowCase c = base_case(plan);
+        c.speed = 0;
+        c.spin = axis * plan.spin_rate;
+        c.spin_centre = shape.centroid;
+        const int along = axis.x != 0 ? 0 : axis.y != 0 ? 1 : 2;
+        add_task(plan, TaskKind::spin, std::string("spin ") + (axis[along] < 0 ? "-" : "+") + "xyz"[along], c);
+    }
 }
 
 }  // namespace
@@ -66,53 +132,79 @@ BakePlan plan_bake(const BakeOptions& options) {
     const Preset p = preset(options.quality);
     BakePlan plan;
     plan.options = options;
-    const std::uint32_t count = options.directions ? options.directions : p.directions;
-    const std::uint32_t frequency = frequency_of(count);
-    require(frequency > 0, "--directions " + std::to_string(count) +
+    std::uint32_t frequency = options.directions ? frequency_of(options.directions) : p.least_frequency;
+    require(frequency > 0, "--directions " + std::to_string(options.directions) +
                                ": a direction set has 4 n^2 + 2 directions: 6, 18, 38, 66, 102, "
                                "146, ... up to 1026");
-    plan.directions = DirectionSet(frequency);
-    const std::uint32_t sources = options.sources ? options.sources : p.sources;
-    require(sources <= Map::max_sources, "--sources " + std::to_string(sources) + ": at most 4096");
+    require(options.sources <= Map::max_sources, "--sources " + std::to_string(options.sources) + ": at most 4096");
     const std::uint32_t most_triangles = options.triangles ? options.triangles : 2000;
     require(most_triangles <= Map::max_triangles, "--triangles: at most 2097152");
+    plan.speeds = options.speeds;
+    plan.speeds.push_back(options.speed);
+    std::sort(plan.speeds.begin(), plan.speeds.end());
+    plan.speeds.erase(std::unique(plan.speeds.begin(), plan.speeds.end()), plan.speeds.end());
+    require(plan.speeds.size() <= Map::max_speeds, "--speeds: a map holds at most 16");
 
     plan.mesh_hash = mesh_hash(options.mesh);
     const Surface surface = load_surface(options.mesh, plan.notes, options.scale);
     const SurfaceProperties shape = measure(surface);
-    plan.surface = tessellate(surface, length(shape.high - shape.low) / longest_edges, most_triangles).surface;
-    plan.regions = split_regions(plan.surface, sources);
-    plan.patches = plan.regions;
+    plan.surface = sample_triangles(surface, most_triangles);
+    plan.regions = options.sources ? split_regions(plan.surface, options.sources)
+                                   : choose_regions(plan.surface, {p.region_error}).regions;
+    if (options.symmetry) plan.symmetry = find_symmetry(surface);
+    if (plan.symmetry.kind == SymmetryKind::finite && plan.symmetry.elements.size() == 1) {
+        plan.patches = plan.regions;
+    } else {
+        const auto triangles = static_cast<std::uint32_t>(plan.surface.triangles.size());
+        plan.patches = split_regions(
+            plan.surface, std::max(plan.regions.count, std::min({patches_per_region * plan.regions.count,
+                                                                 triangles / triangles_per_patch, kMostRegions})));
+    }
 
+    std::vector<Vec3d> first = distinct_directions(plan.symmetry, frequency);
+    while (!options.directions && frequency < p.most_frequency) {
+        std::vector<Vec3d> more = distinct_directions(plan.symmetry, frequency + 1);
+        if (more.size() > p.flows) break;
+        first = std::move(more);
+        ++frequency;
+    }
+    plan.directions = DirectionSet(std::max(frequency, p.mean_frequency));
+    plan.fluctuation_directions = DirectionSet(frequency);
     double area = 0;
-    for (std::uint32_t d = 0; d < plan.directions.count(); ++d)
-        area += projected_area(surface, plan.directions.direction(d));
-    plan.reference_length = std::sqrt(area / plan.directions.count());
+    const DirectionSet all_round(3);
+    for (std::uint32_t d = 0; d < all_round.count(); ++d) area += projected_area(surface, all_round.direction(d));
+    plan.reference_length = std::sqrt(area / all_round.count());
     plan.start_up = p.start_up;
     plan.period = p.period;
     plan.overlap = overlap_share * p.period;
     plan.harmonics = static_cast<std::uint32_t>(harmonics_per_length * plan.period);
     plan.samples = good_length(2 * plan.harmonics + 2);
 
-    for (std::uint32_t d = 0; d < plan.directions.count(); ++d) {
-        FlowCase c;
-        c.direction = plan.directions.direction(d);
-        c.speed = options.speed;
-        c.density = options.density;
-        c.viscosity = options.viscosity;
-        c.resolution = options.resolution > 0 ? options.resolution : p.cells;
-        c.reference_length = plan.reference_length;
-        c.start_up = plan.start_up;
-        c.duration = plan.period + plan.overlap;
-        Task task{"direction " + std::to_string(d), c, plan_flow(plan.surface, c)};
-        const std::string& warning = task.cost.warning;
-        if (!warning.empty() && std::find(plan.notes.begin(), plan.notes.end(), warning) == plan.notes.end())
-            plan.notes.push_back(warning);
-        plan.tasks.push_back(std::move(task));
-    }
+    plan.spacing = spacing_of(frequency);
+    if (!options.directions) plan.budget = p.budget;
+    plan.most_directions = static_cast<std::uint32_t>(std::ceil((1 + most_more) * static_cast<double>(first.size())));
+    for (std::size_t k = 0; k < plan.speeds.size(); ++k)
+        for (const Vec3d& e : first) add_stream(plan, e, plan.speeds[k]);
+    if (options.spin) add_spins(plan, shape);
     return plan;
 }
 
-bool extend_plan(BakePlan&, const std::vector<TaskResult>&) { return false; }
+bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results) {
+    if (!(plan.budget.rms > 0)) return false;
+    std::vector<SolvedDirection> solved;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        const Task& task = plan.tasks[k];
+        if (task.kind != TaskKind::stream || task.flow.speed != plan.options.speed) continue;
+        const FlowMeans means = means_of(results[k]);
+        solved.push_back({task.flow.direction, means.force, means.torque - cross(plan.symmetry.centre, means.force)});
+    }
+    if (solved.size() >= plan.most_directions) return false;
+    const KnownForces known(plan.symmetry, solved, plan.reference_length, plan.spacing);
+    const DirectionErrors errors = known.errors();
+    if (errors.rms <= plan.budget.rms && errors.worst <= plan.budget.worst) return false;
+    const std::vector<Vec3d> more = known.next(std::min<std::size_t>(round_size, plan.most_directions - solved.size()));
+    for (const Vec3d& e : more) add_stream(plan, e, plan.options.speed);
+    return !more.empty();
+}
 
 }  // namespace frm::bake

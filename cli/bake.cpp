@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct Options {
     BakeArguments arguments;
-    std::string out, work;
+    std::string out, work, raw;
     bool named = false, force = false, keep = false, json = false;
 };
 
@@ -71,8 +71,9 @@ double to_do(const bake::Store& store, const bake::BakePlan& plan) {
 
 void run(Options& o) {
     bake::BakeOptions& options = o.arguments.bake;
-    require_distinct({o.out}, {options.mesh});
+    require_distinct({o.out, o.raw}, {options.mesh});
     require_map_place(o.out, o.named, o.force);
+    if (!o.raw.empty()) require_writable(o.raw);
     settle_unit(o.arguments);
     bake::BakePlan plan = plan_and_tell(o.arguments, o.out);
 
@@ -95,6 +96,7 @@ void run(Options& o) {
         bar.update(1, -1, "making the map");
         BakeRun done;
         done.json = o.json;
+        done.raw = o.raw;
         done.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         done.updates = cost_of(plan).updates - before;
         finish_map(plan, results, o.out, done, [&] { bar.hide(); });
@@ -131,6 +133,9 @@ void add_bake(CLI::App& app) {
         ->add_option("-o,--out", o.out,
                      "the map to write; it appears whole or not at all (default: the mesh's name,\n"
                      ".frm, in the current folder, if there is none yet)")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command->add_option("--raw", o.raw, "write the tables too as they were before rounding (frm verify --against)")
         ->check(not_empty())
         ->type_name("FILE");
     command->add_flag("--force", o.force, "replace a file that is not a map, or was not named by -o");

@@ -70,10 +70,12 @@ bake::BakePlan plan_and_tell(const BakeArguments& a, const std::string& out) {
     for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     const Cost cost = cost_of(plan);
     std::fprintf(stderr,
-                 "%u directions, %u sources, %zu triangles; %zu flows, %.3g cell updates, %.0f MB of memory for each "
-                 "that runs at a time\n",
-                 plan.directions.count(), plan.regions.count, plan.surface.triangles.size(), plan.tasks.size(),
-                 cost.updates, static_cast<double>(cost.bytes) / 1e6);
+                 "symmetry: %s\n"
+                 "%u sources, %zu triangles; %zu flows%s, %.3g cell updates, %.0f MB of memory for each that runs at a "
+                 "time\n",
+                 bake::describe(plan.symmetry).c_str(), plan.regions.count, plan.surface.triangles.size(),
+                 plan.tasks.size(), plan.budget.rms > 0 ? " or more" : "", cost.updates,
+                 static_cast<double>(cost.bytes) / 1e6);
     return plan;
 }
 
@@ -97,6 +99,13 @@ void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required) {
         ->check(stream_speed_range())
         ->type_name("N")
         ->capture_default_str();
+    command
+        .add_option("--speeds", a.bake.speeds,
+                    "further ones, m/s, by commas: the map then follows the Reynolds number (docs/bake.md)")
+        ->delimiter(',')
+        ->check(stream_speed_range())
+        ->type_name("N,N,...");
+    command.add_flag("--spin", a.bake.spin, "solve turns about three axes in still water too");
     command.add_option("--density", a.bake.density, "of the fluid, kg/m^3")
         ->check(density_range())
         ->type_name("N")
@@ -106,16 +115,26 @@ void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required) {
         ->type_name("N")
         ->capture_default_str();
     command
-        .add_option("--directions", a.bake.directions, "of the stream: 6, 18, 38, 66, 102, ... (default: by quality)")
+        .add_option("--directions", a.bake.directions,
+                    "exactly so many, before symmetry: 6, 18, 38, 66, 102, ... (default: by quality,\n"
+                    "and more where the force bends)")
         ->check(whole_within(6, 1026))
         ->type_name("N");
-    command.add_option("--sources", a.bake.sources, "haptic sources, 1 to 4096 (default: by quality)")
+    command.add_option("--sources", a.bake.sources, "haptic sources, 1 to 4096 (default: by their error)")
         ->check(whole_within(1, 4096))
         ->type_name("N");
     command
         .add_option("--resolution", a.bake.resolution, "grid cells across the object, 4 to 512 (default: by quality)")
         ->check(number_within(4, 512))
         ->type_name("N");
+    command.add_flag("--no-symmetry{false}", a.bake.symmetry, "solve every direction, whatever symmetry the mesh has");
+    command.add_flag("--no-added-mass{false}", a.bake.added_mass, "leave the added mass out of the map");
+    command
+        .add_option("--threshold", a.bake.threshold,
+                    "drop harmonics of the fluctuation below this share of the largest mean force")
+        ->check(number_within(0, 1))
+        ->type_name("N")
+        ->capture_default_str();
     command.add_option("--triangles", a.bake.triangles, "sample triangles of the surface at most (default: 2000)")
         ->check(whole_within(4, 2097152))
         ->type_name("N");

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "bake/map/raw.h"
 #include "cli/command.h"
 #include "cli/file.h"
 #include "core/map/codec.h"
@@ -40,13 +41,24 @@ std::string default_map(const std::string& mesh) { return fs::path(mesh).stem().
 void finish_map(const bake::BakePlan& plan, const std::vector<bake::TaskResult>& results, const std::string& out,
                 const BakeRun& run, const std::function<void()>& before_words) {
     bake::BakeReport report;
-    const std::unique_ptr<Map> map = bake::make_map(plan, results, report);
+    bake::Tables tables;
+    const std::unique_ptr<Map> map = bake::make_map(plan, results, report, &tables);
     const std::vector<std::uint8_t> file = encode_map(*map);
     write_file(out, file.data(), file.size());
+    if (!run.raw.empty()) {
+        const std::vector<std::uint8_t> raw = bake::encode_raw(*map, tables);
+        write_file(run.raw, raw.data(), raw.size());
+    }
     before_words();
 
-    double worst = 0;
-    for (const bake::DirectionReport& d : report.directions) worst = std::max(worst, d.uncertainty);
+    const double worst = report.uncertainty;
+    const bake::DirectionErrors& between = report.direction_errors;
+    const bool missed = plan.budget.rms > 0 && (between.rms > plan.budget.rms || between.worst > plan.budget.worst);
+    if (missed)
+        std::fprintf(stderr,
+                     "note: directions are predicted from each other to %.1f %% rms and %.1f %% at worst, not the %.0f "
+                     "and %.0f %% of this quality: take a higher --quality, --resolution or --directions\n",
+                     100 * between.rms, 100 * between.worst, 100 * plan.budget.rms, 100 * plan.budget.worst);
     if (worst > 0.1)
         std::fprintf(
             stderr,
@@ -63,6 +75,8 @@ void finish_map(const bake::BakePlan& plan, const std::vector<bake::TaskResult>&
                                  {"reynolds", map->facts.reynolds},
                                  {"reynolds_solved", map->facts.reynolds_solved},
                                  {"uncertainty", worst},
+                                 {"direction_error_rms", between.rms},
+                                 {"direction_error_worst", between.worst},
                                  {"quantisation_error", map->facts.quantisation_error},
                                  {"mlups", mlups},
                                  {"seconds", run.seconds}};
@@ -71,12 +85,11 @@ void finish_map(const bake::BakePlan& plan, const std::vector<bake::TaskResult>&
     }
     char speed[64] = "";
     if (mlups > 0) std::snprintf(speed, sizeof speed, " (%.0f million cell updates a second)", mlups);
-    std::printf("%s: %.1f kB, %u directions, %u sources, %u samples, in %.1f s%s\n", out.c_str(),
-                static_cast<double>(file.size()) / 1e3, map->directions.count(), map->source_count(), map->samples,
-                run.seconds, speed);
-    std::printf(
-        "mean drag is uncertain by %.1f %% (worst direction); fluctuations are stored to %.2g of the peak force\n",
-        100 * worst, static_cast<double>(map->facts.quantisation_error));
+    std::printf("%s: %.1f kB, %zu flows, %u sources, in %.1f s%s\n", out.c_str(),
+                static_cast<double>(file.size()) / 1e3, plan.tasks.size(), map->source_count(), run.seconds, speed);
+    std::printf("shares of the largest force: between directions %.1f %% rms, %.1f %% at worst; rounded to %.2g %%\n",
+                100 * between.rms, 100 * between.worst, 100 * static_cast<double>(map->facts.quantisation_error));
+    std::printf("mean drag is uncertain by %.1f %% (statistics of the worst direction)\n", 100 * worst);
 }
 
 }  // namespace frm::cli

@@ -19,6 +19,7 @@ std::string default_map(const std::string& mesh);
 struct BakeRun {
     double seconds = 0;  ///< wall time of this run
     double updates = 0;  ///< cell updates done in this run
+    std::string raw;     ///< where the unrounded tables go; empty: nowhere
     bool json = false;
 };
 

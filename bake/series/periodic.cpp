@@ -2,6 +2,7 @@
 
 #include <kiss_fftr.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -30,23 +31,48 @@ std::uint32_t good_length(std::uint32_t n) {
     }
 }
 
-PeriodicSeries make_periodic(const std::vector<float>& signal, const PeriodicSpec& spec) {
+Seam make_seam(const std::vector<Vec3d>& signal, std::uint32_t period) {
+    const std::size_t overlap =
+        std::min<std::size_t>(signal.size() - std::min<std::size_t>(signal.size(), period), period);
+    Vec3d mean;
+    for (const Vec3d& v : signal) mean += v / static_cast<double>(signal.size());
+    double first = 0, beyond = 0, both = 0;
+    for (std::size_t i = 0; i < overlap; ++i) {
+        const Vec3d a = signal[i] - mean, b = signal[period + i] - mean;
+        first += dot(a, a);
+        beyond += dot(b, b);
+        both += dot(a, b);
+    }
+    // Two stretches that are opposite would leave nothing to divide by.
+    constexpr double least_alike = -0.5;
+    const double alike = first * beyond > 0 ? std::clamp(both / std::sqrt(first * beyond), least_alike, 1.0) : 1.0;
+    Seam seam;
+    for (std::size_t i = 0; i < overlap; ++i) {
+        const double a = (static_cast<double>(i) + 0.5) / static_cast<double>(overlap), b = 1 - a;
+        const double level = 1 / std::sqrt(a * a + b * b + 2 * a * b * alike);
+        seam.first.push_back(static_cast<float>(a * level));
+        seam.beyond.push_back(static_cast<float>(b * level));
+    }
+    return seam;
+}
+
+PeriodicSeries make_periodic(const std::vector<float>& signal, const Seam& seam, const PeriodicSpec& spec) {
     const std::uint32_t n = spec.period, m = spec.samples;
     if (n < 2 || n % 2 || m < 2 || m % 2) throw BakeError("series: a period needs an even number of samples");
-    if (signal.size() < n) throw BakeError("series: the run is shorter than the period");
+    if (signal.size() < n + seam.first.size()) throw BakeError("series: the run is shorter than the period");
     if (spec.harmonics >= m / 2) throw BakeError("series: too many harmonics for the number of samples");
-    const std::size_t overlap = std::min<std::size_t>(signal.size() - n, n);
 
-    std::vector<float> period(signal.begin(), signal.begin() + n);
-    for (std::size_t i = 0; i < overlap; ++i) {
-        const float rise = (static_cast<float>(i) + 0.5f) / static_cast<float>(overlap);
-        period[i] = rise * signal[i] + (1 - rise) * signal[n + i];
+    PeriodicSeries out;
+    for (const float v : signal) out.mean += static_cast<double>(v) / static_cast<double>(signal.size());
+    std::vector<float> period(n);
+    const auto mean = static_cast<float>(out.mean);
+    for (std::size_t i = 0; i < n; ++i) {
+        period[i] = signal[i] - mean;
+        if (i < seam.first.size()) period[i] = seam.first[i] * period[i] + seam.beyond[i] * (signal[n + i] - mean);
     }
 
     std::vector<kiss_fft_cpx> spectrum(n / 2 + 1), kept(m / 2 + 1, kiss_fft_cpx{0, 0});
     kiss_fftr(make_plan(n, false).get(), period.data(), spectrum.data());
-    PeriodicSeries out;
-    for (const float v : signal) out.mean += static_cast<double>(v) / static_cast<double>(signal.size());
     const std::uint32_t highest = std::min(spec.harmonics, n / 2 - 1);
     for (std::uint32_t k = 1; k <= highest; ++k) {
         const double amplitude =

@@ -23,8 +23,8 @@ const char* word_of(Quality quality) {
 /// compilation when an option is added: it must join the others here and in options_of(), or two different bakes would
 /// share their results.
 Json json_of(const BakeOptions& o) {
-    const auto& [mesh, scale, quality, speed, density, viscosity, directions, sources, resolution, triangles, threads] =
-        o;
+    const auto& [mesh, scale, quality, speed, density, viscosity, speeds, spin, added_mass, symmetry, directions,
+                 sources, resolution, triangles, threshold, threads] = o;
     static_cast<void>(threads);
     return {{"mesh", mesh.substr(mesh.find_last_of('/') + 1)},
             {"scale", scale},
@@ -32,10 +32,15 @@ Json json_of(const BakeOptions& o) {
             {"speed", speed},
             {"density", density},
             {"viscosity", viscosity},
+            {"speeds", speeds},
+            {"spin", spin},
+            {"added_mass", added_mass},
+            {"symmetry", symmetry},
             {"directions", directions},
             {"sources", sources},
             {"resolution", resolution},
-            {"triangles", triangles}};
+            {"triangles", triangles},
+            {"threshold", threshold}};
 }
 
 BakeOptions options_of(const Json& j) {
@@ -51,10 +56,15 @@ BakeOptions options_of(const Json& j) {
     j.at("speed").get_to(o.speed);
     j.at("density").get_to(o.density);
     j.at("viscosity").get_to(o.viscosity);
+    j.at("speeds").get_to(o.speeds);
+    j.at("spin").get_to(o.spin);
+    j.at("added_mass").get_to(o.added_mass);
+    j.at("symmetry").get_to(o.symmetry);
     j.at("directions").get_to(o.directions);
     j.at("sources").get_to(o.sources);
     j.at("resolution").get_to(o.resolution);
     j.at("triangles").get_to(o.triangles);
+    j.at("threshold").get_to(o.threshold);
     // What is not known here, or is out of range, does not come back as it was.
     if (json_of(o) != j) throw BakeError("its options are not those of this version of frm");
     return o;

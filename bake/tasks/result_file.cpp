@@ -151,7 +151,7 @@ std::uint64_t hash_of_body(const Surface& surface, const Regions& patches) {
 std::uint64_t key_of(std::uint64_t body, const FlowCase& flow_case) {
     const auto& [direction, speed, viscosity, density, resolution, reference_length, start_up, duration, turn,
                  confidence, time_limit, grid_error, pictures, section, section_normal, section_origin, section_span,
-                 slab, spin, spin_centre, threads, memory_limit] = flow_case;
+                 slab, spin, spin_centre, turning, threads, memory_limit] = flow_case;
     static_cast<void>(threads), static_cast<void>(memory_limit);  // no bit depends on them
     Bytes bytes;
     Writer w(bytes);
@@ -160,7 +160,7 @@ std::uint64_t key_of(std::uint64_t body, const FlowCase& flow_case) {
     for (const double v : {speed, viscosity, density, resolution, reference_length, start_up, duration, turn,
                            confidence, time_limit, section_span, slab})
         w.f64(v);
-    for (const bool v : {grid_error, pictures, section}) w.u8(v ? 1 : 0);
+    for (const bool v : {grid_error, pictures, section, turning}) w.u8(v ? 1 : 0);
     return fnv1a(bytes.data(), bytes.size());
 }
 

@@ -8,10 +8,13 @@
 
 namespace frm::bake {
 
+enum class TaskKind { stream, spin };
+
 struct Task {
     std::string name;  ///< for people: "direction 12", "speed 2 direction 3", "spin -y"
-    FlowCase flow;     ///< `threads` is set by who runs it
-    FlowPlan cost;     ///< what it takes: cell updates, memory
+    TaskKind kind = TaskKind::stream;
+    FlowCase flow;  ///< `threads` is set by who runs it
+    FlowPlan cost;  ///< what it takes: cell updates, memory
 };
 
 /// The forces on each patch of the plan. Its bits depend on the task, the surface and the patches alone.

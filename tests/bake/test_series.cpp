@@ -1,10 +1,12 @@
 #include <cmath>
 #include <cstdint>
 
+#include "bake/series/align.h"
 #include "bake/series/periodic.h"
 #include "bake/series/spectrum.h"
 #include "tests/support/catch.h"
 
+using namespace frm;
 using namespace frm::bake;
 
 namespace {
@@ -26,11 +28,30 @@ double rms(const std::vector<float>& s) {
     return std::sqrt(sum / static_cast<double>(s.size()));
 }
 
+/// The signal as the x component of a force.
+PeriodicSeries periodic_of(const std::vector<float>& signal, const PeriodicSpec& spec) {
+    std::vector<Vec3d> force;
+    for (const float v : signal) force.push_back({static_cast<double>(v), 0, 0});
+    return make_periodic(signal, make_seam(force, spec.period), spec);
+}
+
+/// Band-limited noise: tones of random phase, none of which fits into a period.
+std::vector<float> noise(std::size_t samples, std::uint32_t seed) {
+    std::vector<float> s(samples, 0.0f);
+    for (int k = 0; k < 12; ++k) {
+        seed = seed * 1664525u + 1013904223u;
+        const double phase = 2 * pi * seed / 4294967296.0, cycles = 5.37 + 1.913 * k;
+        for (std::size_t i = 0; i < samples; ++i)
+            s[i] += static_cast<float>(std::sin(phase + 2 * pi * cycles * static_cast<double>(i) / 512));
+    }
+    return s;
+}
+
 }  // namespace
 
 TEST_CASE("a signal that is periodic already stays as it is", "[series]") {
     const auto signal = sine(256, 4.0 / 256, 2, 5);
-    const PeriodicSeries p = make_periodic(signal, {256, 64, 16, 0});
+    const PeriodicSeries p = periodic_of(signal, {256, 64, 16, 0});
     CHECK(p.mean == Approx(5));
     for (std::size_t i = 0; i < 64; ++i)
         CHECK(static_cast<double>(p.fluctuation[i]) ==
@@ -40,7 +61,7 @@ TEST_CASE("a signal that is periodic already stays as it is", "[series]") {
 TEST_CASE("the seam is as smooth as the rest", "[series]") {
     // Seven and a half cycles with a drift: a bare period would jump by an amplitude and more.
     const auto signal = sine(320, 7.5 / 256, 1, 0, 0.003);
-    const PeriodicSeries p = make_periodic(signal, {256, 128, 40, 0});
+    const PeriodicSeries p = periodic_of(signal, {256, 128, 40, 0});
     double largest = 0;
     for (std::size_t i = 0; i + 1 < 128; ++i)
         largest = std::max(largest, std::fabs(static_cast<double>(p.fluctuation[i + 1] - p.fluctuation[i])));
@@ -56,15 +77,15 @@ TEST_CASE("harmonics above the highest and below the threshold are gone", "[seri
     std::vector<float> signal = sine(256, 4.0 / 256, 1);
     const auto weak = sine(256, 9.0 / 256, 0.01), fast = sine(256, 60.0 / 256, 1);
     for (std::size_t i = 0; i < 256; ++i) signal[i] += weak[i] + fast[i];
-    const PeriodicSeries p = make_periodic(signal, {256, 64, 20, 0.02});
+    const PeriodicSeries p = periodic_of(signal, {256, 64, 20, 0.02});
     CHECK(rms(p.fluctuation) == Approx(std::sqrt(0.5)).epsilon(1e-4));
-    const PeriodicSeries with = make_periodic(signal, {256, 64, 20, 0.005});
+    const PeriodicSeries with = periodic_of(signal, {256, 64, 20, 0.005});
     CHECK(rms(with.fluctuation) > rms(p.fluctuation) * 1.00002);
 }
 
 TEST_CASE("a run that is too short is refused", "[series]") {
-    CHECK_THROWS_AS(make_periodic(sine(100, 0.1, 1), {256, 64, 16, 0}), BakeError);
-    CHECK_THROWS_AS(make_periodic(sine(256, 0.1, 1), {256, 64, 32, 0}), BakeError);
+    CHECK_THROWS_AS(periodic_of(sine(100, 0.1, 1), {256, 64, 16, 0}), BakeError);
+    CHECK_THROWS_AS(periodic_of(sine(256, 0.1, 1), {256, 64, 32, 0}), BakeError);
 }
 
 TEST_CASE("good lengths are even and smooth", "[series]") {
@@ -97,10 +118,10 @@ TEST_CASE("a frequency is good to half a per cent from eight periods", "[series]
             for (std::size_t i = 0; i < samples; ++i) {
                 const double t = static_cast<double>(i), share = t / static_cast<double>(samples);
                 const double noise = 0.1 * std::sqrt(12.0) * (random() - 0.5);
-                lift.push_back(static_cast<float>((1 - growth + growth * share) *
-                                                      (std::sin(2 * pi * per_sample * t + first) +
-                                                       0.3 * std::sin(4 * pi * per_sample * t + second)) +
-                                                  drift * share + 5 + noise));
+                lift.push_back(static_cast<float>(
+                    (1 - growth + growth * share) *
+                        (std::sin(2 * pi * per_sample * t + first) + 0.3 * std::sin(4 * pi * per_sample * t + second)) +
+                    drift * share + 5 + noise));
             }
             CHECK(strongest_peak(lift, 0.02).frequency == Approx(per_sample / 0.02).epsilon(0.005));
         }
@@ -110,4 +131,40 @@ TEST_CASE("a frequency is good to half a per cent from eight periods", "[series]
 TEST_CASE("a frequency near the highest there is", "[series]") {
     for (const double cycles : {0.24, 0.251, 0.3333, 0.41, 0.47})
         CHECK(strongest_peak(sine(300, cycles, 1), 1).frequency == Approx(cycles).epsilon(1e-3));
+}
+
+TEST_CASE("noise is as strong and as smooth in the seam as elsewhere", "[series]") {
+    double inside = 0, seam = 0, jump = 0, step = 0;
+    for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+        const PeriodicSeries p = periodic_of(noise(640, seed), {512, 256, 60, 0});
+        for (std::size_t i = 0; i < 256; ++i) {
+            const auto v = static_cast<double>(p.fluctuation[i]),
+                       next = static_cast<double>(p.fluctuation[(i + 1) % 256]);
+            // The overlap of 128 samples of 512 is the first quarter.
+            (i < 64 ? seam : inside) += v * v / (i < 64 ? 64 : 192);
+            (i == 255 ? jump : step) += (next - v) * (next - v) / (i == 255 ? 1 : 255);
+        }
+    }
+    CHECK(std::sqrt(seam / inside) == Approx(1).margin(0.07));
+    CHECK(std::sqrt(jump / step) == Approx(1).margin(0.15));
+}
+
+TEST_CASE("neighbours are turned into step", "[series]") {
+    constexpr std::size_t samples = 64;
+    std::vector<std::vector<Vec3d>> series;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours;
+    for (std::uint32_t d = 0; d < 6; ++d) {
+        std::vector<Vec3d> s;
+        for (std::size_t i = 0; i < samples; ++i) {
+            const double t = 2 * pi * static_cast<double>(i + 11 * d * d) / samples;
+            s.push_back({0, std::cos(3 * t) + 0.3 * std::cos(5 * t), 0.1 * std::sin(2 * t)});
+        }
+        series.push_back(s);
+        if (d > 0) neighbours.emplace_back(d - 1, d);
+    }
+    const std::vector<std::uint32_t> shift = align(series, neighbours);
+    for (std::uint32_t d = 1; d < 6; ++d)
+        for (std::size_t i = 0; i < samples; ++i)
+            CHECK(length(series[d][(i + shift[d]) % samples] - series[0][(i + shift[0]) % samples]) < 1e-9);
+    CHECK(align({}, {}).empty());
 }

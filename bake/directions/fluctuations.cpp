@@ -1,0 +1,104 @@
+#include "bake/directions/fluctuations.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "bake/series/align.h"
+#include "bake/series/periodic.h"
+
+namespace frm::bake {
+namespace {
+
+constexpr std::size_t components = 6;
+
+/// The force at each sample, [sample][region][component], of the image of a flow.
+std::vector<float> carried(const TaskResult& result, const Transfer& transfer, std::uint32_t regions) {
+    std::vector<float> out(std::size_t{result.samples} * regions * components, 0.0f);
+    const Matrix3& g = transfer.g();
+    const auto add = [&](const std::vector<float>& from, std::size_t i, double share, float* to) {
+        const Vec3d f = g * (Vec3d(Vec3f{from[i], from[i + 1], from[i + 2]}) * share);
+        for (int c = 0; c < 3; ++c) to[c] += static_cast<float>(f[c]);
+    };
+    for (std::size_t s = 0; s < result.samples; ++s) {
+        for (const Transfer::Share& part : transfer.shares()) {
+            const std::size_t i = (s * result.regions + part.patch) * 3;
+            float* const to = out.data() + (s * regions + part.region) * components;
+            add(result.pressure, i, part.share, to);
+            add(result.friction, i, part.share, to + 3);
+        }
+    }
+    return out;
+}
+
+std::vector<Vec3d> whole(const Fluctuation& f, std::uint32_t regions, std::uint32_t samples) {
+    std::vector<Vec3d> out(samples);
+    for (std::size_t l = 0; l < regions; ++l)
+        for (std::size_t s = 0; s < samples; ++s)
+            for (std::size_t c = 0; c < components; ++c)
+                out[s][static_cast<int>(c % 3)] += static_cast<double>(f[(l * samples + s) * components + c]);
+    return out;
+}
+
+Fluctuation one_direction(const TaskResult& result, const Transfer& transfer, std::uint32_t regions,
+                          const FluctuationSpec& spec) {
+    const Seam seam = make_seam(whole_force(result), spec.period);
+    const std::vector<float> force = carried(result, transfer, regions);
+    const PeriodicSpec periodic{spec.period, spec.samples, spec.harmonics, spec.threshold};
+    Fluctuation out(std::size_t{regions} * spec.samples * components);
+    std::vector<float> signal(result.samples);
+    for (std::size_t l = 0; l < regions; ++l) {
+        for (std::size_t c = 0; c < components; ++c) {
+            for (std::size_t s = 0; s < signal.size(); ++s) signal[s] = force[(s * regions + l) * components + c];
+            const PeriodicSeries series = make_periodic(signal, seam, periodic);
+            for (std::size_t s = 0; s < spec.samples; ++s)
+                out[(l * spec.samples + s) * components + c] = series.fluctuation[s];
+        }
+    }
+    return out;
+}
+
+/// Pairs of directions that share a face of the set.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours_in(const DirectionSet& set) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::uint32_t f = 0; f < set.faces(); ++f) {
+        const std::array<std::uint32_t, 3> c = set.corners(f);
+        for (const auto& [a, b] : {std::pair{c[0], c[1]}, std::pair{c[1], c[2]}, std::pair{c[2], c[0]}})
+            pairs.emplace_back(std::min(a, b), std::max(a, b));
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
+}  // namespace
+
+std::vector<Fluctuation> fluctuations(const RegionForces& forces, const std::vector<const TaskResult*>& results,
+                                      std::uint32_t regions, const DirectionSet& directions,
+                                      const FluctuationSpec& spec) {
+    std::vector<Fluctuation> out;
+    std::vector<std::vector<Vec3d>> wholes;
+    for (std::uint32_t d = 0; d < directions.count(); ++d) {
+        const Vec3d e = directions.direction(d);
+        const RegionForces::Nearest from = forces.nearest(e);
+        Fluctuation f = one_direction(*results[from.flow], *from.transfer, regions, spec);
+        // Between flows the strength is the fit's, not the nearest one's.
+        const double own = forces.flows()[from.flow].rms;
+        const auto level = static_cast<float>(own > 0 ? forces.rms(e) / own : 1.0);
+        for (float& v : f) v *= level;
+        wholes.push_back(whole(f, regions, spec.samples));
+        out.push_back(std::move(f));
+    }
+    const std::vector<std::uint32_t> shift = align(wholes, neighbours_in(directions));
+    for (std::size_t d = 0; d < out.size(); ++d) {
+        for (std::size_t l = 0; l < regions; ++l) {
+            const auto row = out[d].begin() + static_cast<std::ptrdiff_t>(l * spec.samples * components);
+            std::rotate(row, row + static_cast<std::ptrdiff_t>(shift[d] * components),
+                        row + static_cast<std::ptrdiff_t>(spec.samples * components));
+        }
+    }
+    return out;
+}
+
+}  // namespace frm::bake

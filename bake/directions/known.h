@@ -1,0 +1,56 @@
+// What the solved flows say of the mean force in all directions: where it is known, how well each flow is predicted by
+// the others, and where the next one would tell most.
+#pragma once
+
+#include <vector>
+
+#include "bake/directions/fit.h"
+#include "bake/directions/images.h"
+#include "bake/symmetry/symmetry.h"
+
+namespace frm::bake {
+
+/// A solved direction's mean force and torque (about the symmetry's centre) on the whole body.
+struct SolvedDirection {
+    Vec3d direction;
+    Vec3d force, torque;
+};
+
+/// Errors of the force at directions that were left out, as shares of the largest force.
+struct DirectionErrors {
+    double rms = 0, worst = 0;
+};
+
+class KnownForces {
+public:
+    /// `size`: a length that makes a force of a torque. Images are no farther apart than `spacing` radians.
+    KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirection>& solved, double size, double spacing);
+
+    /// The images of solved direction k; they are sites first_site(k) and on of the fit.
+    const std::vector<Image>& images_of(std::size_t k) const { return images_[k]; }
+    std::size_t first_site(std::size_t k) const { return first_[k]; }
+    const DirectionFit& fit() const { return fit_; }
+
+    /// Every solved direction predicted from the others.
+    DirectionErrors errors() const;
+    /// `count` directions to solve next: where the forces around are predicted badly and the nearest is far.
+    std::vector<Vec3d> next(std::size_t count) const;
+
+private:
+    const Symmetry& symmetry_;
+    double spacing_;
+    std::vector<std::vector<Image>> images_;
+    std::vector<std::size_t> first_;
+    std::vector<FitSite> sites_;
+    std::vector<double> error_;  // of the force at each site, predicted without its group; share of the largest force
+    FitModel model_;
+    DirectionFit fit_;
+};
+
+/// Mean angle between neighbours of a lattice, radians.
+double spacing_of(std::uint32_t frequency);
+
+/// Those of a lattice's directions that are not images of others of them, nearly enough.
+std::vector<Vec3d> distinct_directions(const Symmetry& symmetry, std::uint32_t frequency);
+
+}  // namespace frm::bake

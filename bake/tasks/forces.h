@@ -1,0 +1,26 @@
+// What a solved flow says of each patch: its mean force, and how strongly the whole swings about its own.
+#pragma once
+
+#include <vector>
+
+#include "bake/tasks/task.h"
+
+namespace frm::bake {
+
+struct PatchForce {
+    Vec3d pressure, friction;  ///< N, mesh's frame
+};
+
+struct FlowMeans {
+    std::vector<PatchForce> patch;
+    Vec3d force;     ///< of the whole body, N
+    Vec3d torque;    ///< of the whole body about the mesh's origin, N m
+    double rms = 0;  ///< of the whole force about its mean, N
+};
+
+FlowMeans means_of(const TaskResult& result);
+
+/// The force on the whole body at each sample, N.
+std::vector<Vec3d> whole_force(const TaskResult& result);
+
+}  // namespace frm::bake

@@ -1,0 +1,180 @@
+// From forces in a few directions to forces in all.
+#include <cmath>
+
+#include "bake/directions/fit.h"
+#include "bake/directions/images.h"
+#include "bake/directions/known.h"
+#include "bake/directions/transfer.h"
+#include "bake/regions/regions.h"
+#include "bake/regions/tessellate.h"
+#include "core/map/directions.h"
+#include "tests/support/catch.h"
+#include "tests/support/shapes.h"
+
+using namespace frm;
+using namespace frm::bake;
+
+namespace {
+
+/// Pressure on the faces of a box that is 1, 2 and 5 wide, by the square of the velocity across each.
+Vec3d law(const Vec3d& e) { return {10 * e.x * std::fabs(e.x), 5 * e.y * std::fabs(e.y), 2 * e.z * std::fabs(e.z)}; }
+
+Symmetry of_a_box() { return find_symmetry(test::box({0.1, 0.2, 0.5})); }
+
+std::vector<SolvedDirection> solve(const std::vector<Vec3d>& directions) {
+    std::vector<SolvedDirection> out;
+    for (const Vec3d& e : directions) out.push_back({e, law(e), {}});
+    return out;
+}
+
+double worst_error(const DirectionFit& fit, const std::vector<FitValue>& values) {
+    double worst = 0;
+    const DirectionSet all(11);
+    for (std::uint32_t d = 0; d < all.count(); ++d) {
+        const Vec3d e = all.direction(d);
+        const std::vector<double> w = fit.weights(e);
+        Vec3d sum;
+        for (std::size_t i = 0; i < w.size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c) sum[static_cast<int>(c)] += w[i] * values[i][c];
+        worst = std::max(worst, length(sum - law(e)) / 10);
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a fit goes through what is known, and its doubt is small there alone", "[directions]") {
+    std::vector<FitSite> sites;
+    std::vector<FitValue> values;
+    const DirectionSet set(3);
+    for (std::uint32_t d = 0; d < set.count(); ++d) {
+        sites.push_back({set.direction(d), d});
+        const Vec3d f = law(set.direction(d));
+        values.push_back({f.x, f.y, f.z, 0, 0, 0});
+    }
+    const DirectionFit fit(sites, {1, 1e-8});
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        const std::vector<double> w = fit.weights(sites[i].direction);
+        for (std::size_t j = 0; j < w.size(); ++j) CHECK(w[j] == Approx(i == j ? 1 : 0).margin(1e-4));
+        CHECK(fit.doubt(sites[i].direction) < 1e-3);
+    }
+    CHECK(fit.doubt(Vec3d{1, 1, 0.2} / std::sqrt(2.04)) > 0.05);
+
+    // What straight lines between the lattice's directions would miss.
+    double straight = 0;
+    const DirectionSet all(11);
+    for (std::uint32_t d = 0; d < all.count(); ++d) {
+        const Vec3d e = all.direction(d);
+        const DirectionWeights w = set.interpolate(Vec3f(e));
+        Vec3d sum;
+        for (int k = 0; k < 3; ++k) sum += law(set.direction(w.index[k])) * static_cast<double>(w.weight[k]);
+        straight = std::max(straight, length(sum - law(e)) / 10);
+    }
+    CHECK(worst_error(fit, values) < 0.5 * straight);
+}
+
+TEST_CASE("what is left out is predicted as if it had never been there", "[directions]") {
+    std::vector<FitSite> sites;
+    std::vector<FitValue> values;
+    const DirectionSet set(2);
+    for (std::uint32_t d = 0; d < set.count(); ++d) {
+        sites.push_back({set.direction(d), d / 2});  // pairs
+        const Vec3d f = law(set.direction(d));
+        values.push_back({f.x, f.y, f.z, 0, 0, 0});
+    }
+    const FitModel model{1, 1e-3};
+    const std::vector<FitValue> left = DirectionFit(sites, model).left_out(values);
+    for (std::uint32_t group = 0; group < 9; ++group) {
+        std::vector<FitSite> others;
+        std::vector<FitValue> known;
+        for (std::size_t i = 0; i < sites.size(); ++i) {
+            if (sites[i].group == group) continue;
+            others.push_back({sites[i].direction, static_cast<std::uint32_t>(others.size())});
+            known.push_back(values[i]);
+        }
+        const DirectionFit without(others, model);
+        for (std::size_t i = 0; i < sites.size(); ++i) {
+            if (sites[i].group != group) continue;
+            const std::vector<double> w = without.weights(sites[i].direction);
+            double sum = 0;
+            for (std::size_t j = 0; j < w.size(); ++j) sum += w[j] * known[j][0];
+            CHECK(left[i][0] == Approx(sum).margin(1e-6));
+        }
+    }
+}
+
+TEST_CASE("of a box an eighth of the directions is solved, and says as much as all", "[directions]") {
+    const Symmetry symmetry = of_a_box();
+    const std::vector<Vec3d> few = distinct_directions(symmetry, 3);
+    CHECK(few.size() == 10);
+    const KnownForces known(symmetry, solve(few), 0.2, spacing_of(3));
+    std::size_t sites = 0;
+    for (std::size_t k = 0; k < few.size(); ++k) {
+        for (const Image& image : known.images_of(k)) {
+            for (const Matrix3& g : image.by) CHECK(length(g * few[k] - image.direction) < 1e-9);
+            ++sites;
+        }
+    }
+    CHECK(sites == 38);
+    // Face on, four isometries leave the direction as it is.
+    CHECK(known.images_of(0).front().by.size() == 4);
+    CHECK(known.errors().rms < 0.1);
+    CHECK(known.errors().worst >= known.errors().rms);
+}
+
+TEST_CASE("further directions are asked for where they help", "[directions]") {
+    const Symmetry symmetry = of_a_box();
+    std::vector<Vec3d> directions = distinct_directions(symmetry, 2);
+    double before = 0;
+    for (int round = 0; round < 4; ++round) {
+        const KnownForces known(symmetry, solve(directions), 0.2, spacing_of(2));
+        const double now = known.errors().rms;
+        if (round == 0) before = now;
+        if (round == 3) CHECK(now < 0.5 * before);
+        for (const Vec3d& e : known.next(3)) {
+            CHECK(length(e) == Approx(1));
+            for (const Vec3d& other : directions) CHECK(apart(symmetry, e, other) > 0.05);
+            directions.push_back(e);
+        }
+    }
+}
+
+TEST_CASE("bodies of revolution are solved along half a circle, spheres once", "[directions]") {
+    Symmetry round;
+    round.kind = SymmetryKind::axial_mirrored;
+    round.axis = {0, 0, 1};
+    const std::vector<Vec3d> few = distinct_directions(round, 3);
+    CHECK(few.size() >= 3);
+    CHECK(few.size() <= 6);
+    for (const Vec3d& e : few)
+        for (const Image& image : images(round, e, spacing_of(3))) {
+            CHECK(std::fabs(image.direction.z) == Approx(std::fabs(e.z)).margin(1e-9));
+            for (const Matrix3& g : image.by) CHECK(length(g * e - image.direction) < 1e-9);
+        }
+    round.kind = SymmetryKind::spherical;
+    CHECK(distinct_directions(round, 4).size() == 1);
+    const auto all = images(round, {1, 0, 0}, spacing_of(3));
+    CHECK(all.size() >= 38);
+    for (const Image& image : all)
+        for (const Matrix3& g : image.by) {
+            CHECK(length(g * Vec3d{1, 0, 0} - image.direction) < 1e-9);
+            CHECK(std::fabs(determinant(g)) == Approx(1));
+        }
+}
+
+TEST_CASE("forces that are carried over are all there, each where it belongs", "[directions]") {
+    const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
+    const Regions regions = split_regions(box, 12), patches = split_regions(box, 60);
+    const auto place = region_properties(box, regions), from = region_properties(box, patches);
+    const Symmetry symmetry = of_a_box();
+    for (const Matrix3& g : symmetry.elements) {
+        const Transfer transfer(box, patches, regions, symmetry.centre, g);
+        std::vector<double> sum(patches.count, 0.0);
+        for (const Transfer::Share& s : transfer.shares()) {
+            sum[s.patch] += s.share;
+            // A patch's image lies in the region, so it looks the same way.
+            CHECK(dot(g * from[s.patch].normal, place[s.region].normal) > 0.5);
+        }
+        for (const double share : sum) CHECK(share == Approx(1));
+    }
+}
