@@ -21,11 +21,12 @@ struct Tables {
 };
 
 /// Rounds the tables into the map: means to `budget` / 3 and fluctuations to two thirds of it, as shares of the peak
-/// force on the whole object; friction's means to five times that share of friction's own peak, because they matter by
-/// themselves at low speed. The largest error found goes to facts.quantisation_error: at most `budget` (it holds for
-/// fluctuations whose largest value is below 32767 steps; what is larger gets a larger step). Budget: above 0, below 1.
-/// The map must have its sources, directions, fluctuation_directions, speeds, samples and facts.base_speed; the sizes
-/// of the tables must match (throws Error).
+/// force on the whole object. Friction's means have a step of their own, to about five times that share of friction's
+/// own peak where that is finer: at low speed they matter by themselves. The largest error found goes to
+/// facts.quantisation_error: at most `budget` (above 0, below 1), unless a table's largest value is more than 32767 of
+/// the steps that this takes; then it is what it is. The map must have its sources, directions,
+/// fluctuation_directions, speeds, samples and facts.base_speed; the sizes of the tables must match, and all must be
+/// finite (throws Error, FRM_ERROR_INTERNAL, naming what is not).
 void fill_tables(Map& map, const Tables& tables, double budget);
 
 /// The largest error of the force on the whole object that comes of the map's rounding, as a share of its peak in the

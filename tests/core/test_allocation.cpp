@@ -36,6 +36,8 @@ TEST_CASE("a tick and a motion allocate nothing", "[allocation]") {
     World world = test::world_of();
     world.create_water(test::water_of(100, 0.025f, 0.5f));
     Body& body = world.create_body(test::body_of(test::map_of(test::fine_box({0.2, 0.1, 0.3}, 0.05))));
+    const auto full = std::make_shared<Map>(test::full_map(test::fine_box({0.2, 0.1, 0.3}, 0.05)));
+    Body& other = world.create_body(test::body_of(full, {0.5, 0.2, 0}, {}, {{0.1f, 0, 0}, {0, 1, 2}}));
     world.tick(0.002f);
     const std::size_t before = allocations.load();
     for (int t = 0; t < 200; ++t) {
@@ -45,6 +47,7 @@ TEST_CASE("a tick and a motion allocate nothing", "[allocation]") {
     }
     CHECK(allocations.load() == before);
     CHECK(body.wet_sources > 0);
+    CHECK(other.wet_sources > 0);
     std::vector<int> seen(3);
     CHECK(allocations.load() > before);
 }
