@@ -54,8 +54,8 @@ double buried_share(const Surface& surface, int threads) {
 
 // With N the operator from normal velocity to (minus) the outer potential, the fluid's energy is <g, N g> / 2, and
 //     N = V + (1/2 + K) W^-1 (1/2 + K')
-// (the symmetric form of Calderon's projector; W the hypersingular operator). In any space of potentials the second term
-// is a positive form that grows with the space to the exact one: the mass is positive and, but for quadrature,
+// (the symmetric form of Calderon's projector; W the hypersingular operator). In any space of potentials the second
+// term is a positive form that grows with the space to the exact one: the mass is positive and, but for quadrature,
 // never too large.
 Solution solve(const Surface& surface, bool overlaps, int threads) {
     Layers layers = make_layers(surface, overlaps ? find_buried(surface, threads) : std::vector<char>(), threads);
@@ -239,9 +239,9 @@ Matrix about_origin(const Matrix& mass, const Vec3d& centre, double size, double
     return result;
 }
 
-// The limit of three numbers that grow ever more slowly, as a geometric series (Aitken). Grading towards the edges makes
-// an error of one over the number of triangles (von Petersdorff & Stephan 1990 for edges): a series that shrinks more
-// slowly than that from mesh to mesh, as coarse meshes' do, is not trusted further.
+// The limit of three numbers that grow ever more slowly, as a geometric series (Aitken). Grading towards the edges
+// makes an error of one over the number of triangles (von Petersdorff & Stephan 1990 for edges): a series that
+// shrinks more slowly than that from mesh to mesh, as coarse meshes' do, is not trusted further.
 double extrapolated(double first, double second, double third) {
     const double step = third - second, before = second - first;
     if (!(step > 0) || !(before > 0)) return third;
@@ -257,8 +257,8 @@ Surface filled(const Surface& surface, std::size_t triangles) {
     return tessellate(surface, 1e-9, static_cast<std::uint32_t>(triangles)).surface;
 }
 
-// By rounding, the least eigenvalue of a semidefinite matrix may be a little below 0. Its diagonal then grows by 1e-15 of
-// itself, or ten times that and so on, until elimination finds only positive pivots.
+// By rounding, the least eigenvalue of a semidefinite matrix may be a little below 0. Its diagonal then grows by 1e-15
+// of itself, or ten times that and so on, until elimination finds only positive pivots.
 void make_definite(Matrix& mass) {
     const Matrix given = mass;
     for (double lift = 1e-15; lift < 1e-3; lift *= 10) {

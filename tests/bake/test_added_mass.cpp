@@ -1,5 +1,6 @@
 // Added mass against formulas: Lamb, Hydrodynamics, 6th ed. (1932), articles 71, 92, 114, 115 and 138. Numbers of
-// DNV-RP-C205 (2010), appendix D, where there is no formula. 2 % is what the map promises; 1 % where the answer is exact.
+// DNV-RP-C205 (2010), appendix D, where there is no formula. 2 % is what the map promises;
+// 1 % where the answer is exact.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -116,7 +117,7 @@ TEST_CASE("added mass in the middle of long bodies is that of their sections") {
 }
 
 TEST_CASE("added mass of thin rectangular plates is that of DNV-RP-C205, table D-2") {
-    // Theirs have no thickness. 1/500 of the width adds 1 % to the square plate's; the difference is taken out by halving.
+    // Theirs have no thickness. 1/500 of the width adds 1 % to the square plate's; halving takes it out.
     for (const auto& [ratio, coefficient] : {std::pair{1.0, 0.579}, {5.0, 0.897}}) {
         const AddedMass thick = quick(box({1, ratio, 0.004})), thin = quick(box({1, ratio, 0.002}));
         require_symmetric_and_positive(thin);
@@ -127,8 +128,8 @@ TEST_CASE("added mass of thin rectangular plates is that of DNV-RP-C205, table D
 }
 
 TEST_CASE("added mass of a cube lies between two methods' numbers") {
-    // DNV-RP-C205, table D-2, has 0.68, which the converged number is not: docs/added-mass.md. Constant sources on 216 to
-    // 2,400 rectangles of a cube, graded towards its edges, their equation met at the middles (Hess & Smith), give 0.6573,
+    // DNV-RP-C205, table D-2, has 0.68, which the converged number is not: docs/added-mass.md. Constant sources on 216
+    // to 2,400 rectangles, graded towards the edges, their equation met at the middles (Hess & Smith), give 0.6573,
     // 0.6489, 0.6432, 0.6411 and 0.6401 from above; the form used here rises from below.
     const AddedMass cube = quick(box({1, 1, 1}), 3200);
     require_symmetric_and_positive(cube);
