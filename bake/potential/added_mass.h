@@ -14,7 +14,8 @@ struct AddedMass {
     std::array<double, 36> matrix{};
     /// Estimated error of the diagonal about the body's centroid along its principal axes, the largest of six. Each is
     /// a share of the entry, or of 2 % of the largest force, and of that times the squared radius of gyration of the
-    /// surface for torques (or of 2 % of the largest torque), where the entry is smaller: a sphere's torques are 0, and so is their error.
+    /// surface for torques (or of 2 % of the largest torque), where the entry is smaller: a sphere's torques are 0, and
+    /// so is their error.
     double error = 0;
     /// Share of the surface that lies inside another piece of the body, where no water is. Where it is more than 0 the
     /// matrix may be some percent too small on top of `error` (docs/added-mass.md).
