@@ -12,12 +12,13 @@ struct AddedMass {
     /// Row by row; rows are force along x, y, z and torque about x, y, z, columns the accelerations alike, about the
     /// mesh's origin. kg, kg m, kg m^2. Exactly symmetric, and positive semidefinite.
     std::array<double, 36> matrix{};
-    /// Estimated error of the diagonal about the body's centroid, the largest of six. Each is a share of the entry, or
-    /// of 2 % of the largest force, and of that times the squared radius of gyration of the surface for torques (or of
-    /// 2 % of the largest torque), where the entry is smaller: a sphere's torques are 0, and so is their error.
+    /// Estimated error of the diagonal about the body's centroid along its principal axes, the largest of six. Each is
+    /// a share of the entry, or of 2 % of the largest force, and of that times the squared radius of gyration of the
+    /// surface for torques (or of 2 % of the largest torque), where the entry is smaller: a sphere's torques are 0, and
+    /// so is their error.
     double error = 0;
-    /// Share of the surface that lies inside another piece of the body, where no water is. The method takes it for wetted:
-    /// expect an error of about this size on top, and join pieces that run into each other where it is too much.
+    /// Share of the surface that lies inside another piece of the body, where no water is. Where it is more than 0 the
+    /// matrix may be some percent too small on top of `error` (docs/added-mass.md).
     double buried = 0;
     std::size_t triangles = 0;  ///< of the finest mesh that was solved
 };

@@ -241,8 +241,8 @@ private:
     std::vector<std::uint32_t> near_keep_, near_drop_, common_;
 };
 
-// A triangle whose corners lie on a line has no normal: its longest side is turned to join the two opposite corners, which
-// leaves the surface where it is.
+// A triangle whose corners lie on a line has no normal: its longest side is turned to join the two opposite corners,
+// which leaves the surface where it is.
 void turn_flat_triangles(Surface& surface) {
     const auto height = [&](std::uint32_t t, std::uint32_t& side) {
         double longest = -1;

@@ -1,4 +1,4 @@
-// atanh and atan2 in double from + - * / and sqrt alone: libm's differ between machines, these give the same bits on all.
+// atanh and atan2 in double from + - * / alone: libm's differ between machines, these give the same bits on all.
 #pragma once
 
 #include <cstdint>

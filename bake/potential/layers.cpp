@@ -30,12 +30,6 @@ struct Sample {
     Modes push;  // times the weight
 };
 
-Sample sample(const Panel& panel, const Vec3d& x, double weight) {
-    Sample s{x, weight, push(panel.normal, x)};
-    for (double& v : s.push) v *= weight;
-    return s;
-}
-
 // Sums over the outer points for one inner panel.
 struct Row {
     double source = 0;                            // of 1 / r over the pair at hand
@@ -56,10 +50,11 @@ struct Row {
 
 class Assembly {
 public:
-    explicit Assembly(const std::vector<Panel>& panels) : panels_(panels), samples_(panels.size()) {
+    Assembly(const std::vector<Panel>& panels, const std::vector<char>& buried)
+        : panels_(panels), buried_(buried), samples_(panels.size()) {
         for (std::size_t t = 0; t < panels.size(); ++t) {
             for (std::size_t q = 0; q < 3; ++q)
-                samples_[t][q] = sample(panels[t], at(panels[t].corner, three[q]), panels[t].area / 3);
+                samples_[t][q] = sample(t, at(panels[t].corner, three[q]), panels[t].area / 3);
         }
     }
 
@@ -71,7 +66,7 @@ public:
             if (far(t, panels_[u].centre, panels_[u].radius)) {
                 for (const Sample& s : samples_[u]) add_far(t, s, sums);
             } else {
-                add_near(t, panels_[u], panels_[u].corner, panels_[u].area, panels_[u].radius, 4, sums);
+                add_near(t, u, panels_[u].corner, panels_[u].area, panels_[u].radius, 4, sums);
             }
             if (u <= t) source[u] = sums.source;
         }
@@ -79,6 +74,13 @@ public:
     }
 
 private:
+    Sample sample(std::size_t t, const Vec3d& x, double weight) const {
+        Sample s{x, weight, push(panels_[t].normal, x)};
+        const double share = !buried_.empty() && buried_[t] != 0 ? 0 : weight;
+        for (double& v : s.push) v *= share;
+        return s;
+    }
+
     // With three points on each side the error is then below 3e-4 of the pair.
     bool far(std::size_t t, const Vec3d& centre, double radius) const {
         const Vec3d d = centre - panels_[t].centre;
@@ -104,7 +106,7 @@ private:
     }
 
     // Closed form inside, seven points outside, on pieces small enough for the inner panel's field.
-    void add_near(std::size_t t, const Panel& outer, const std::array<Vec3d, 3>& c, double area, double radius,
+    void add_near(std::size_t t, std::size_t outer, const std::array<Vec3d, 3>& c, double area, double radius,
                   int depth, Row& sums) const {
         const Panel& inner = panels_[t];
         const Vec3d centre = (c[0] + c[1] + c[2]) / 3.0, d = centre - inner.centre;
@@ -125,12 +127,13 @@ private:
     }
 
     const std::vector<Panel>& panels_;
+    const std::vector<char>& buried_;
     std::vector<std::array<Sample, 3>> samples_;
 };
 
 }  // namespace
 
-Layers make_layers(const Surface& surface, int threads) {
+Layers make_layers(const Surface& surface, const std::vector<char>& buried, int threads) {
     Layers result;
     const std::size_t count = surface.triangles.size(), vertices = surface.vertices.size();
     for (std::size_t t = 0; t < count; ++t)
@@ -139,7 +142,7 @@ Layers make_layers(const Surface& surface, int threads) {
 
     std::vector<double> source(count * (count + 1) / 2);  // of 1 / r between panels
     std::vector<Row> rows(count);
-    const Assembly assembly(panels);
+    const Assembly assembly(panels, buried);
     const auto n = static_cast<std::ptrdiff_t>(count);
 #pragma omp parallel for num_threads(flow::thread_count(threads)) schedule(dynamic, 8)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
@@ -151,14 +154,16 @@ Layers make_layers(const Surface& surface, int threads) {
     result.direct.fill(0);
     for (std::size_t t = 0; t < count; ++t) {
         const Panel& p = panels[t];
+        const bool wet = buried.empty() || buried[t] == 0;
         for (std::size_t i = 0; i < 3; ++i) {
             Modes& load = result.load[surface.triangles[t][i]];
             // Half of <f_i, g_k>: g is linear on the panel.
             Vec3d x = p.centre + (p.corner[i] - p.centre) * 0.25;
             const Modes g = push(p.normal, x);
-            for (std::size_t k = 0; k < 6; ++k) load[k] += p.area / 6 * g[k] + rows[t].dipole[i][k] / four_pi;
+            for (std::size_t k = 0; k < 6; ++k)
+                load[k] += (wet ? p.area / 6 * g[k] : 0) + rows[t].dipole[i][k] / four_pi;
         }
-        for (std::size_t k = 0; k < 6; ++k) {
+        for (std::size_t k = 0; k < 6 && wet; ++k) {
             const auto& s = rows[t].push[k];
             const Vec3d turn = cross(Vec3d(s[1], s[2], s[3]), p.normal);
             const double field[6] = {p.normal.x * s[0], p.normal.y * s[0], p.normal.z * s[0], turn.x, turn.y, turn.z};

@@ -22,8 +22,9 @@ struct Layers {
     std::array<double, 36> direct;  ///< <g_k, V g_l>, V the single layer
 };
 
-/// Triangles without area are left out. The same bits for any number of threads (0: OpenMP's own).
-Layers make_layers(const Surface& surface, int threads);
+/// Where `buried` is set the surface lies inside the body and pushes no water; empty: nowhere. Triangles without area
+/// are left out. The same bits for any number of threads (0: OpenMP's own).
+Layers make_layers(const Surface& surface, const std::vector<char>& buried, int threads);
 
 /// The normal velocity of a surface with this normal, at x, in each motion.
 inline Modes push(const Vec3d& normal, const Vec3d& x) {

@@ -23,7 +23,7 @@ public:
                 waiting_.pop();
                 continue;
             }
-            // The neighbour across the longest side may have a longer one of its own, and so on: the last pair is halved.
+            // The neighbour across the longest side may have a longer one of its own, and so on; the last is halved.
             std::uint32_t t = next.triangle, side = longest(t);
             for (;;) {
                 const std::uint32_t u = neighbours_[t][side], other = longest(u);

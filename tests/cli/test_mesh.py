@@ -265,3 +265,22 @@ def test_a_table_of_many(frm, mesh_of, tmp_path):
     assert "loaded: 12 triangles" in rows[1] and "; turned 4 triangles" in rows[1]
     assert rows[2].startswith("| `meshes/box.glb` | loaded: 12 triangles, 0.4 x 0.3 x 0.2 m, 0.024 m^3 |")
     assert table(tmp_path, program="/bin/false")[0] == 1
+
+
+def test_added_mass_is_shown_on_request(good):
+    sphere = MESHES / "sphere.glb"
+    assert "added_mass" not in good("mesh", sphere, "--json").json
+    j = good("mesh", sphere, "--added-mass", "--density", 1025, "--json").json
+    mass = j["added_mass"]
+    assert mass["density"] == 1025 and mass["error"] < 0.02 and mass["buried"] == 0
+    assert len(mass["matrix"]) == 6 and all(len(row) == 6 for row in mass["matrix"])
+    for i in range(3):
+        assert mass["matrix"][i][i] == pytest.approx(0.5 * 1025 * j["volume"], rel=0.005)
+    text = good("mesh", sphere, "--added-mass").out
+    assert "added mass at 1000 kg/m^3" in text and "force x" in text and "torque z" in text
+
+
+def test_added_mass_needs_a_sensible_density(refused):
+    sphere = MESHES / "sphere.glb"
+    refused(2, "--density|--added-mass", "mesh", sphere, "--density", 1025)
+    refused(2, "--density", "mesh", sphere, "--added-mass", "--density", -1)
