@@ -43,7 +43,7 @@ Room room(int level, int levels, int wake_level, bool section) {
 struct TurningRoom {
     double beside, along;
 };
-constexpr TurningRoom swirl{1.4, 0.4}, turning_far{4, 2.5};
+constexpr TurningRoom swirl{1.4, 0.4}, turning_far{3.5, 2};
 constexpr double coarsest_radius = 5, swirl_radius = 12;  // least cells a radius, far away and where the wakes go round
 
 int turning_block_count(double radius) {
