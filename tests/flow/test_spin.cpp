@@ -154,7 +154,7 @@ TEST_CASE("a sphere feels the same torque from the frame that turns as from a wa
 
 TEST_CASE("a prism that turns feels one torque whichever way it goes and the lattice lies", "[flow]") {
     const Surface prism = test::box({1, 1, 1});
-    FlowCase c = spinning(std::sqrt(0.5), 300, 14, 6, 2);
+    FlowCase c = spinning(std::sqrt(0.5), 300, 16, 8, 3);
     const FlowSeries forward = solve(prism, c);
     const double torque = mean(forward.torque).z;
     CHECK(torque < 0);
@@ -171,7 +171,7 @@ TEST_CASE("a plate that turns has the same bits for any number of threads", "[fl
     Regions regions;
     regions.count = 12;
     for (std::uint32_t t = 0; t < 12; ++t) regions.region.push_back(t);
-    FlowCase c = spinning(0.9, 5000, 10, 1, 1);
+    FlowCase c = spinning(0.9, 5000, 16, 1, 1);
     c.spin_centre = {0.1, 0.2, 0};
     c.threads = 1;
     const FlowSeries one = solve_flow(plate, regions, c, nullptr);
