@@ -171,7 +171,7 @@ TEST_CASE("a plate that turns has the same bits for any number of threads", "[fl
     Regions regions;
     regions.count = 12;
     for (std::uint32_t t = 0; t < 12; ++t) regions.region.push_back(t);
-    FlowCase c = spinning(0.9, 5000, 16, 1, 1);
+    FlowCase c = spinning(0.9, 5000, 22, 1, 0.5);
     c.spin_centre = {0.1, 0.2, 0};
     c.threads = 1;
     const FlowSeries one = solve_flow(plate, regions, c, nullptr);
