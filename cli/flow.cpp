@@ -20,7 +20,7 @@ struct Options {
     bake::FlowCase flow;
     std::string mesh, out, report;
     Numbers direction{}, section{}, spin{};
-    bool has_section = false, automatic_section = false, has_spin = false, has_slab = false;
+    bool has_direction = false, has_section = false, automatic_section = false, has_spin = false, has_slab = false;
     double length = 0, confidence = 0, memory = 8;
     bool no_grid_error = false, json = false;
 };
@@ -45,11 +45,29 @@ Vec3d longest_across(const bake::Surface& surface, const Vec3d& direction) {
     return best;
 }
 
+/// Where nothing but a spin drives the flow, the direction only says whose projected area the reference length is of: the
+/// axis of the mesh, away from the spin's, along which the mesh looks largest.
+Vec3d direction_for_spin(const bake::Surface& surface, const Vec3d& spin) {
+    const bake::SurfaceProperties shape = bake::measure(surface);
+    const Vec3d size = shape.high - shape.low;
+    Vec3d best;
+    double largest = -1;
+    for (int k = 0; k < 3; ++k) {
+        const double area = size[(k + 1) % 3] * size[(k + 2) % 3];
+        if (std::fabs(spin[k]) > 0.6 * length(spin) || area <= largest) continue;  // at least one is under 1 / root 3
+        largest = area;
+        best = {};
+        best[k] = 1;
+    }
+    return best;
+}
+
 /// What can be said of the options before the mesh is read.
 void check(const Options& o) {
     if (o.has_spin && !(length(o.spin) > 0)) throw CLI::ValidationError("--spin", "is zero: leave it out");
     if (o.flow.speed == 0 && !o.has_spin)
         throw CLI::ValidationError("--speed", "0 is for a body that spins (--spin); else it is from 1e-06 to 10000");
+    if (!o.has_direction && o.flow.speed > 0) throw CLI::RequiredError("--direction");
     if (o.has_slab && !o.has_section) throw CLI::ValidationError("--slab", "is the span of a section: add --section");
     std::vector<std::string> outputs{o.out};
     if (!o.report.empty())
@@ -67,6 +85,7 @@ void complete(Options& o, const bake::Surface& surface) {
     c.memory_limit = static_cast<std::uint64_t>(o.memory * gib);
     c.spin = {o.spin[0], o.spin[1], o.spin[2]};
     c.spin_centre = bake::measure(surface).centroid;
+    if (!o.has_direction) c.direction = direction_for_spin(surface, c.spin);
     if (!o.has_section) return;
     c.section = true;
     c.section_origin = c.spin_centre;
@@ -206,7 +225,8 @@ void add_case(CLI::App& command, Options& o) {
         ->required()
         ->check(not_empty())
         ->type_name("");
-    add_direction(command, "--direction", o.direction, "where the water goes, in the mesh's frame")->required();
+    add_direction(command, "--direction", o.direction,
+                  "where the water goes, in the mesh's frame (not needed with --speed 0)");
     command.add_option("--speed", o.flow.speed, "of the stream, m/s; 0 only with --spin")
         ->required()
         ->check(speed_or_zero())
@@ -219,9 +239,9 @@ void add_case(CLI::App& command, Options& o) {
         ->check(density_range())
         ->type_name("N")
         ->capture_default_str();
-    add_vector(
-        command, "--spin", o.spin, 1e6,
-        "rad/s; the mesh, a body of revolution, turns about the axis through its\ncentroid (default: it stands)");
+    add_vector(command, "--spin", o.spin, 1e6,
+               "rad/s; the mesh turns about the axis through its centroid: any mesh with\n"
+               "--speed 0, in a stream a body of revolution (default: it stands)");
     add_direction_or_auto(command, "--section", o.section, o.automatic_section,
                           "solve in two dimensions the cut through the centroid, across this normal\n"
                           "(default: the mesh's longest axis across the stream).\n"
@@ -270,7 +290,9 @@ void add_effort(CLI::App& command, Options& o) {
     command.add_flag("--no-grid-error", o.no_grid_error,
                      "leave out the run on half the resolution, a sixteenth of the work, which\n"
                      "tells the error of the grid");
-    command.add_option("--turn", o.flow.turn, "turn the grid about the stream by so many degrees")
+    command
+        .add_option("--turn", o.flow.turn,
+                    "turn the grid about the stream (of a mesh that turns: about the spin) by so\nmany degrees")
         ->check(number_within(-360, 360))
         ->type_name("DEGREES")
         ->capture_default_str();
@@ -313,6 +335,7 @@ void add_flow(CLI::App& app) {
     add_effort(*command, *options);
     add_output(*command, *options);
     command->callback([options, command] {
+        options->has_direction = command->count("--direction") > 0;
         options->has_section = command->count("--section") > 0;
         options->has_spin = command->count("--spin") > 0;
         options->has_slab = command->count("--slab") > 0;

@@ -37,13 +37,12 @@ Room room(int level, int levels, int wake_level, bool section) {
 }
 
 // Blocks that turn with the body, in its largest distance from the axis: beside from the axis, along it from the body. In
-// the turning frame the water far away is the faster the farther, so there is no room for ten sizes; against a box of 5
-// beside and 3 along, one of 4 and 2 changed the torque by 0.5 % or less, 3 and 2 by 1 %, 2 and 2 by 2 to 7 %
-// (docs/flow.md).
+// the turning frame the water far away is the faster the farther, so there is no room for ten sizes. What other boxes do
+// to the torque is in docs/flow.md.
 struct TurningRoom {
     double beside, along;
 };
-constexpr TurningRoom swirl{1.4, 0.4}, turning_far{4, 2.5};
+constexpr TurningRoom swirl{1.4, 0.4}, turning_far{3.5, 2};
 constexpr double coarsest_radius = 5, swirl_radius = 12;  // least cells a radius, far away and where the wakes go round
 
 int turning_block_count(double radius) {

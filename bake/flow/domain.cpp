@@ -24,9 +24,9 @@ constexpr double most_viscosity = 0.05, least_speed = 1e-3;
 constexpr double sample_rate = 32;  // samples while the stream travels one reference length
 constexpr std::uint64_t most_steps = 50'000'000;
 constexpr double sponge_share = 0.12;  // of the coarsest block's length
-// In the turning frame the water at rest moves fastest in the corners of the box. What it does there is exact, so that it
-// may be more than twice as fast as a stream: between 0.1 and 0.3 the torque differs by 0.2 %.
-constexpr double corner_speed = 0.25;
+// In the turning frame water at rest moves the faster the farther it is from the axis. What it does there is exact, so
+// that it may be faster than a stream, and the body with it.
+constexpr double fastest_rest = 0.3;
 constexpr double turning_sponge = 0.5;  // of the body's largest distance from the axis
 constexpr double settling = 4;          // lengths until the fine grid has forgotten what it started from
 // Where no edge says where the flow leaves a wall, its layer does, and a layer thinner than cells says it wrong: against
@@ -260,17 +260,13 @@ void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
     d.turning = c.speed == 0 && (c.turning || !revolution);
 }
 
-/// Of a node of the outermost block, m.
-double farthest_from_axis(const Domain& d) {
+/// From the axis of spin to the nearest side of the outermost block: farther out the water is held at rest.
+double reach_of(const Domain& d) {
+    const int level = d.levels() - 1;
     const Grid& grid = d.blocks.back().grid;
-    double farthest = 0;
-    for (const int i : {0, grid.nx - 1}) {
-        for (const int j : {0, grid.ny - 1}) {
-            const Vec3d arm = d.node(d.levels() - 1, i, j, 0) - d.node(0, 0, 0, 0) - d.spin_centre;
-            farthest = std::max(farthest, std::hypot(arm.x, arm.y));
-        }
-    }
-    return farthest * d.plan.cell;
+    const Vec3d axis = d.spin_centre + d.node(0, 0, 0, 0), low = axis - d.node(level, 0, 0, 0),
+                high = d.node(level, grid.nx - 1, grid.ny - 1, 0) - axis;
+    return std::min(std::min(low.x, low.y), std::min(high.x, high.y));
 }
 
 /// z along the spin: the terms of a turning frame are then exact on the lattice. x and y fit the body's outline.
@@ -373,12 +369,13 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     d.origin = body.centre() - middle * plan.cell;
     if (c.section) d.origin.z = dot(d.frame.z, c.section_origin);
     d.spin_centre = in_cells(d.frame.to_stream(c.spin_centre), d);
+    if (d.turning) d.reach = reach_of(d);
 
     d.speed = std::max(c.speed, length(c.spin) * d.radius);
     plan.reynolds = d.speed * plan.reference_length / c.viscosity;
     // A relaxation time far above 1 would move interpolated walls, so a slow, thick fluid takes a lower lattice speed.
-    d.lattice_speed = std::min(d.turning ? corner_speed * d.radius / farthest_from_axis(d) : lattice_speed,
-                               most_viscosity * plan.reynolds / d.length);
+    const double fastest = d.turning ? fastest_rest * d.radius / (d.reach * plan.cell) : lattice_speed;
+    d.lattice_speed = std::min(fastest, most_viscosity * plan.reynolds / d.length);
     if (d.lattice_speed < least_speed) {
         throw BakeError("flow: Reynolds number " + number(plan.reynolds) + " is too low for resolution " +
                         number(c.resolution) + "; it must be at least " +

@@ -52,6 +52,7 @@ struct Domain {
     double layer_error = 0;     ///< share of the drag that boundary layers thinner than cells may cost
     double radius = 0;          ///< largest distance from the spin's axis, m
     bool turning = false;       ///< the lattice turns with the body, about z
+    double reach = 0;           ///< turning: from the axis to where the water is held at rest, finest cells
     Vec3d spin;                 ///< stream's frame, radians a finest step
     Vec3d spin_centre;          ///< finest cells from node (0, 0, 0) of the finest block
     /// The clock's first step (beyond the ramp where the flow starts from another run's), when the ramp of the stream

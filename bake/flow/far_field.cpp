@@ -102,31 +102,38 @@ void fill_still(const Grid& grid, Populations& populations, const Turning& turni
     }
 }
 
-void close_row_still(const Grid& grid, Populations& populations, std::size_t row, const Turning& turning) {
-    const auto y = static_cast<float>(grid.row_y(row));
+void close_row_still(const Grid& grid, Populations& populations, std::size_t row, const Turning& turning,
+                     double reach) {
+    const int j = grid.row_y(row);
     const std::size_t first = grid.row(row);
+    const auto hold = [&](std::size_t cell, int x, int y) {
+        const auto f = still_populations(turning, static_cast<float>(x), static_cast<float>(y));
+        for (int i = 0; i < direction_count; ++i) populations.at(i)[cell] = f[static_cast<std::size_t>(i)];
+    };
+    const double y = j - static_cast<double>(turning.axis_y), half = std::sqrt(std::max(0.0, reach * reach - y * y));
+    const int from = std::clamp(static_cast<int>(std::ceil(static_cast<double>(turning.axis_x) - half)), 0, grid.nx);
+    const int to =
+        std::clamp(static_cast<int>(std::floor(static_cast<double>(turning.axis_x) + half)) + 1, from, grid.nx);
+    for (int x = 0; x < from; ++x) hold(first + static_cast<std::size_t>(x), x, j);
+    for (int x = to; x <= grid.nx; ++x) hold(first + static_cast<std::size_t>(x), x, j);
     // The last cell of a row's memory is the ghost ahead of the next row.
-    const auto behind = still_populations(turning, static_cast<float>(grid.nx), y);
-    const auto ahead = still_populations(turning, -1, y + 1);
-    for (int i = 1; i < direction_count; ++i) {
-        const auto d = static_cast<std::size_t>(i);
-        if (directions[d].x < 0) populations.at(i)[first + static_cast<std::size_t>(grid.nx)] = behind[d];
-        if (directions[d].x > 0) populations.at(i)[first + grid.pitch() - 1] = ahead[d];
-    }
+    hold(first + grid.pitch() - 1, -1, j + 1);
 }
 
-std::vector<std::vector<float>> still_relaxation_times(const Grid& grid, double base, double sponge) {
-    std::vector<std::vector<float>> rows(static_cast<std::size_t>(std::ceil(sponge)) + 1);
-    for (std::size_t across = 0; across < rows.size(); ++across) {
-        rows[across].resize(grid.pitch());
-        for (int x = 0; x < static_cast<int>(grid.pitch()); ++x) {
-            const double away = std::min({static_cast<double>(across), static_cast<double>(x), grid.nx - 1.0 - x});
+std::vector<float> still_relaxation_times(const Grid& grid, double base, double sponge, const Turning& turning,
+                                          double reach) {
+    std::vector<float> times(grid.rows() * grid.pitch());
+    for (std::size_t r = 0; r < grid.rows(); ++r) {
+        const int y = grid.row_y(r), z = grid.row_z(r);
+        for (std::size_t x = 0; x < grid.pitch(); ++x) {
+            const double dx = static_cast<double>(x) - static_cast<double>(turning.axis_x);
+            const double dy = y - static_cast<double>(turning.axis_y);
+            const double away = std::min({reach - std::hypot(dx, dy), z + 0.0, grid.nz - 1.0 - z});
             const double depth = sponge > 0 ? std::clamp(1 - away / sponge, 0.0, 1.0) : 0.0;
-            rows[across][static_cast<std::size_t>(x)] =
-                static_cast<float>(base + std::max(0.0, 1 - base) * depth * depth);
+            times[r * grid.pitch() + x] = static_cast<float>(base + std::max(0.0, 1 - base) * depth * depth);
         }
     }
-    return rows;
+    return times;
 }
 
 }  // namespace frm::bake::flow

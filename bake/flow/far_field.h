@@ -34,14 +34,16 @@ std::vector<float> relaxation_times(const Grid& grid, double base, double sponge
 /// In the turning frame: what a cell at (x, y) of water at rest holds after the collision.
 std::array<float, direction_count> still_populations(const Turning& turning, float x, float y);
 
-/// Fills all ghosts with water at rest, and puts back the two of a row after the collision has run over them. To first
-/// order the characteristic condition again; where the flow leaves the box, its last cells are thick enough to follow.
+/// Fills all ghosts with water at rest, and, after the collision has run over a row, what of it is in the water that is
+/// held at rest: its two ghosts and all cells farther than `reach` cells from the axis, where the water is the faster the
+/// farther. To first order that is the characteristic condition again; where the flow leaves the box, the cells before
+/// are thick enough to follow.
 void fill_still(const Grid& grid, Populations& populations, const Turning& turning);
-void close_row_still(const Grid& grid, Populations& populations, std::size_t row, const Turning& turning);
+void close_row_still(const Grid& grid, Populations& populations, std::size_t row, const Turning& turning, double reach);
 
-/// Relaxation times for the rows of a box with `sponge` cells of raised viscosity behind all faces: [distance of the row
-/// from the nearest face across y and z, the last for all farther ones]. Water at rest turns as a whole and does not
-/// feel it.
-std::vector<std::vector<float>> still_relaxation_times(const Grid& grid, double base, double sponge);
+/// Relaxation times [row][pitch] of a box with `sponge` cells of raised viscosity before the water that is held at rest.
+/// Water at rest turns as a whole and does not feel it.
+std::vector<float> still_relaxation_times(const Grid& grid, double base, double sponge, const Turning& turning,
+                                          double reach);
 
 }  // namespace frm::bake::flow

@@ -20,6 +20,7 @@ constexpr float soundest = 0.3f;
 
 Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int threads)
     : domain_(domain), wall_(wall), solid_(std::move(solid)), threads_(threads) {
+    reach_ = domain.reach / (1 << (domain.levels() - 1));
     for (int l = 0; l < domain.levels(); ++l) {
         const Grid& grid = domain.blocks[static_cast<std::size_t>(l)].grid;
         Level level;
@@ -27,11 +28,10 @@ Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int th
         level.from = std::make_unique<Populations>(grid);
         level.to = std::make_unique<Populations>(grid);
         const bool outermost = l + 1 == domain.levels();
-        level.relaxation =
-            relaxation_times(grid, domain.relaxation(l), outermost && !domain.turning ? domain.sponge : 0);
-        if (outermost && domain.turning) {
-            level.still_relaxation = still_relaxation_times(grid, domain.relaxation(l), domain.sponge);
-        }
+        level.relaxation = outermost && domain.turning
+                               ? still_relaxation_times(grid, domain.relaxation(l), domain.sponge,
+                                                        turning(static_cast<std::size_t>(l), 0), reach_)
+                               : relaxation_times(grid, domain.relaxation(l), outermost ? domain.sponge : 0);
         level.collision.smagorinsky = smagorinsky;
         level.shares = std::make_unique<Shares>(grid.rows(), threads);
         levels_.push_back(std::move(level));
@@ -197,10 +197,10 @@ void Nest::bulk(std::size_t l) {
         const Turning turns = turning(l, level.step);
         level.shares->each([&](std::size_t r) {
             Collision collision = level.collision;
-            if (outermost) collision.relaxation = still_relaxation(r);
+            if (outermost) collision.relaxation += r * grid.pitch();
             collide_row(grid, *level.from, *level.to, r, collision, turns);
             if (l == 0) empty_solid(r);
-            if (outermost) close_row_still(grid, *level.to, r, turns);
+            if (outermost) close_row_still(grid, *level.to, r, turns, reach_);
         });
 #pragma omp barrier
         return;
@@ -217,14 +217,6 @@ void Nest::bulk(std::size_t l) {
         if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
     });
 #pragma omp barrier
-}
-
-/// Relaxation times of a row of the outermost block in the turning frame.
-const float* Nest::still_relaxation(std::size_t row) const {
-    const Level& level = levels_.back();
-    const int y = level.grid.row_y(row), z = level.grid.row_z(row);
-    const int away = std::min({y, level.grid.ny - 1 - y, z, level.grid.nz - 1 - z});
-    return level.still_relaxation[std::min(static_cast<std::size_t>(away), level.still_relaxation.size() - 1)].data();
 }
 
 /// Cells inside the body are swept along by the bulk's loop; keep them at rest.
@@ -353,7 +345,7 @@ void Nest::set(const Source& source) {
                 fill_far(*p, level.step);
                 for (std::size_t r = 0; r < grid.rows(); ++r) {
                     if (domain_.turning) {
-                        close_row_still(grid, *p, r, turns);
+                        close_row_still(grid, *p, r, turns, reach_);
                     } else {
                         close_row(grid, *p, r, far, domain_.stream_speed > 0);
                     }

@@ -47,8 +47,7 @@ private:
     struct Level {
         Grid grid;
         std::unique_ptr<Populations> from, to;
-        std::vector<float> relaxation;                     // for each cell of a row
-        std::vector<std::vector<float>> still_relaxation;  // outermost, in the turning frame (far_field.h)
+        std::vector<float> relaxation;  // for each cell of a row
         Collision collision;
         std::unique_ptr<Shares> shares;
         float ripple = 0;        // what the push across differs by along a slab's span
@@ -61,7 +60,6 @@ private:
     void walls();
     void bulk(std::size_t level);
     void empty_solid(std::size_t row);
-    const float* still_relaxation(std::size_t row) const;
     double ramp(double step) const;
     double sway(double step) const;
     std::array<float, 3> stream(std::uint64_t step) const;
@@ -78,6 +76,7 @@ private:
     std::vector<std::size_t> solid_begin_;  // of each row
     std::vector<char> is_solid_;            // of each cell of the finest block
     const std::function<void(std::uint64_t)>* after_step_ = nullptr;
+    double reach_ = 0;  // to the water that is held at rest in the turning frame, outermost cells
     int threads_;
 };
 

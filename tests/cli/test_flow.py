@@ -181,6 +181,13 @@ def test_spin(good, box):
         assert alone[key] is None
 
 
+def test_any_mesh_turns_in_still_water(good, refused, box):
+    short = ["--resolution", "8", "--start-up", "0.5", "--duration", "0.5", "--no-grid-error", "--spin", "0,0,2"]
+    j = good("flow", box, *short, "--speed", "0", "--json").json
+    assert j["torque_mean"][2] < 0 and j["torque_coefficient"] > 0 and j["cd"] is None
+    refused(1, "revolution|set speed to 0", "flow", box, *short, "--speed", "0.1", "--direction", "1,0,0")
+
+
 def test_slab_and_turn(good, box, whole):
     j = good("flow", box, *SECTION, "--duration", "1", "--slab", "1", "--no-grid-error", "--json").json
     assert math.isfinite(j["cd"]) and j["area"] == pytest.approx(

@@ -36,6 +36,7 @@ Domain turning_nest(double radius, double rate) {
     d.ramp_steps = 1;
     d.first_step = std::uint64_t{2} << (d.blocks.size() - 1);  // the ramp is over in all blocks
     d.sponge = 3;
+    d.reach = 3.4 * radius;
     return d;
 }
 
@@ -64,6 +65,46 @@ Deviation deviation(const Domain& d, const Nest& nest) {
     worst.speed /= d.lattice_speed;
     worst.pressure /= 3 * d.lattice_speed * d.lattice_speed;
     return worst;
+}
+
+/// The fastest point at 1 m/s, density 1; Reynolds number w R^2 / nu.
+FlowCase spinning(double radius, double reynolds, double cells, double start_up, double duration) {
+    FlowCase c;
+    c.direction = {1, 0, 0};
+    c.speed = 0;
+    c.density = 1;
+    c.spin = {0, 0, 1 / radius};
+    c.viscosity = radius / reynolds;
+    c.resolution = cells;
+    c.start_up = start_up;
+    c.duration = duration;
+    return c;
+}
+
+Vec3d mean(const std::vector<float>& values) {
+    Vec3d sum;
+    for (std::size_t i = 0; i < values.size(); ++i) sum[static_cast<int>(i % 3)] += static_cast<double>(values[i]);
+    return values.empty() ? sum : sum * (3.0 / static_cast<double>(values.size()));
+}
+
+FlowSeries solve(const Surface& surface, const FlowCase& c) {
+    Regions regions;
+    regions.region.assign(surface.triangles.size(), 0);
+    regions.count = 1;
+    return solve_flow(surface, regions, c, nullptr);
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+std::string error_of(const Surface& surface, const FlowCase& c) {
+    try {
+        plan_flow(surface, c);
+    } catch (const BakeError& e) {
+        return e.what();
+    }
+    return {};
 }
 
 }  // namespace
@@ -97,4 +138,59 @@ TEST_CASE("water at rest stays so while the frame starts to turn", "[flow]") {
     CHECK_FALSE(worst.missing);
     CHECK(worst.speed < 8e-3);
     CHECK(worst.pressure < 0.03);
+}
+
+// Dennis, Singh and Ingham 1980, J. Fluid Mech. 101: 2 T / (rho w^2 a^5) = 6.45 Re^-1/2 + 32.1 / Re.
+TEST_CASE("a sphere feels the same torque from the frame that turns as from a wall that moves", "[flow]") {
+    const Surface sphere = test::icosphere(0.5, 4);
+    FlowCase c = spinning(0.5, 100, 12, 10, 2);
+    const auto coefficient = [&] { return -2 * mean(solve(sphere, c).torque).z / (4 * std::pow(0.5, 5)); };
+    const double wall = coefficient();
+    c.turning = true;
+    const double turning = coefficient();
+    CHECK(turning == Approx(wall).epsilon(0.04));
+    CHECK(turning == Approx(6.45 / std::sqrt(100.0) + 32.1 / 100).epsilon(0.06));
+}
+
+TEST_CASE("a prism that turns feels one torque whichever way it goes and the lattice lies", "[flow]") {
+    const Surface prism = test::box({1, 1, 1});
+    FlowCase c = spinning(std::sqrt(0.5), 300, 16, 8, 3);
+    const FlowSeries forward = solve(prism, c);
+    const double torque = mean(forward.torque).z;
+    CHECK(torque < 0);
+    CHECK(std::abs(mean(forward.torque).x) < -0.01 * torque);
+    CHECK(length(mean(forward.pressure) + mean(forward.friction)) < -0.05 * torque);
+    c.spin.z = -c.spin.z;
+    CHECK(mean(solve(prism, c).torque).z == Approx(-torque).epsilon(0.01));
+    c.turn = 30;
+    CHECK(mean(solve(prism, c).torque).z == Approx(-torque).epsilon(0.03));
+}
+
+TEST_CASE("a plate that turns has the same bits for any number of threads", "[flow]") {
+    const Surface plate = test::rotated(test::box({0.2, 1, 1.5}), {1, 2, 3}, 0.4);
+    Regions regions;
+    regions.count = 12;
+    for (std::uint32_t t = 0; t < 12; ++t) regions.region.push_back(t);
+    FlowCase c = spinning(0.9, 5000, 22, 1, 0.5);
+    c.spin_centre = {0.1, 0.2, 0};
+    c.threads = 1;
+    const FlowSeries one = solve_flow(plate, regions, c, nullptr);
+    CHECK(one.plan.blocks.size() > 1);
+    for (const int threads : {2, 3}) {
+        c.threads = threads;
+        const FlowSeries many = solve_flow(plate, regions, c, nullptr);
+        CHECK(same_bits(one.pressure, many.pressure));
+        CHECK(same_bits(one.friction, many.friction));
+        CHECK(same_bits(one.torque, many.torque));
+    }
+}
+
+TEST_CASE("a body that turns is refused in a stream", "[flow]") {
+    const Surface box = test::box({1, 1, 1});
+    FlowCase c = spinning(0.8, 100, 8, 1, 1);
+    CHECK(error_of(box, c).empty());
+    c.speed = 0.1;
+    CHECK(error_of(box, c).find("set speed to 0") != std::string::npos);
+    c.turning = true;
+    CHECK(error_of(test::icosphere(0.5, 3), c).find("turning") != std::string::npos);
 }
