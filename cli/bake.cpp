@@ -75,7 +75,8 @@ void run(Options& o) {
     require_map_place(o.out, o.named, o.force);
     if (!o.raw.empty()) require_writable(o.raw);
     settle_unit(o.arguments);
-    bake::BakePlan plan = plan_and_tell(o.arguments, o.out);
+    bake::BakePlan plan = make_plan(o.arguments, o.out);
+    print_plan(plan);
 
     const std::string root = o.work.empty() ? o.out + ".work" : "";
     bake::Store store(bake::work_folder(root.empty() ? o.work : root, plan), plan, print_note);

@@ -50,9 +50,10 @@ struct PlanOptions {
 
 void plan(PlanOptions& o) {
     settle_unit(o.arguments);
-    const bake::BakePlan plan = plan_and_tell(o.arguments, o.folder + "/.");
+    const bake::BakePlan plan = make_plan(o.arguments, o.folder);
     bake::Store store(o.folder, plan, print_note);
     bake::copy_mesh(o.arguments.bake.mesh, o.folder);
+    print_plan(plan);
     std::vector<std::size_t> missing;
     for (std::size_t k = 0; k < plan.tasks.size(); ++k)
         if (!store.has(k)) missing.push_back(k);

@@ -65,8 +65,11 @@ void complete(const CLI::App& command, BakeArguments& a) {
     a.has_scale = command.count("--scale") > 0;
 }
 
-bake::BakePlan plan_and_tell(const BakeArguments& a, const std::string& out) {
-    bake::BakePlan plan = load_or_show(a.bake.mesh, out, [&] { return bake::plan_bake(a.bake); });
+bake::BakePlan make_plan(const BakeArguments& a, const std::string& out) {
+    return load_or_show(a.bake.mesh, out, [&] { return bake::plan_bake(a.bake); });
+}
+
+void print_plan(const bake::BakePlan& plan) {
     for (const std::string& note : plan.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     const Cost cost = cost_of(plan);
     std::fprintf(stderr,
@@ -76,7 +79,6 @@ bake::BakePlan plan_and_tell(const BakeArguments& a, const std::string& out) {
                  bake::describe(plan.symmetry).c_str(), plan.regions.count, plan.surface.triangles.size(),
                  plan.tasks.size(), plan.budget.rms > 0 ? " or more" : "", cost.updates,
                  static_cast<double>(cost.bytes) / 1e6);
-    return plan;
 }
 
 void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required) {

@@ -24,8 +24,11 @@ void complete(const CLI::App& command, BakeArguments& a);
 /// what to add to the command.
 void settle_unit(BakeArguments& a);
 
-/// plan_bake(), with its notes and what it will take on standard error.
-bake::BakePlan plan_and_tell(const BakeArguments& a, const std::string& out);
+/// plan_bake(). Where the shape is refused, a file beside `out` shows the place.
+bake::BakePlan make_plan(const BakeArguments& a, const std::string& out);
+
+/// A plan's notes and what it will take, on standard error.
+void print_plan(const bake::BakePlan& plan);
 
 /// Cell updates of all tasks, and the memory of the largest.
 struct Cost {

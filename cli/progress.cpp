@@ -85,7 +85,7 @@ bool ProgressBar::update(double share, double seconds_left, const std::string& n
     share = std::clamp(share, 0.0, 1.0);
     const std::string left = seconds_left >= 0 ? time_text(seconds_left) + " left" : "";
     if (terminal_) {
-        const std::size_t across = columns(), width = across < 100 ? 10 : 20;
+        const std::size_t across = columns(), width = across < 100 ? 6 : 20;
         const auto full = static_cast<std::size_t>(share * static_cast<double>(width));
         char percent[16];
         std::snprintf(percent, sizeof percent, " %3.0f %%", 100 * share);

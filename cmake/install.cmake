@@ -12,6 +12,15 @@ install(TARGETS frm EXPORT frmTargets
     INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(FILES "${PROJECT_SOURCE_DIR}/include/frm.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 
+if(TARGET frm_bake_shared)
+    install(TARGETS frm_bake_shared EXPORT frmTargets
+        LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+        RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}"
+        INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+    install(FILES "${PROJECT_SOURCE_DIR}/include/frm_bake.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+endif()
+
 if(TARGET frm_cli)
     # The program finds its library beside itself, wherever the tree is moved to.
     file(RELATIVE_PATH frm_bin_to_lib "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")
@@ -35,3 +44,7 @@ file(RELATIVE_PATH FRM_PC_PREFIX "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" FRM_PC_PREFIX "${FRM_PC_PREFIX}")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/frm.pc.in" "${PROJECT_BINARY_DIR}/frm.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/frm.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+if(TARGET frm_bake_shared)
+    configure_file("${CMAKE_CURRENT_LIST_DIR}/frm_bake.pc.in" "${PROJECT_BINARY_DIR}/frm_bake.pc" @ONLY)
+    install(FILES "${PROJECT_BINARY_DIR}/frm_bake.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endif()

@@ -55,6 +55,9 @@ std::string temporary_name(const std::string& path) {
 }  // namespace
 
 void write_durably(const std::string& path, const void* data, std::size_t size) {
+    struct stat there {};
+    if (stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
+        throw FileError(path + ": is not an ordinary file; nothing is written there");
     const std::string temporary = temporary_name(path);
     Descriptor file(open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.number() < 0) fail(path, errno);
@@ -67,7 +70,8 @@ void write_durably(const std::string& path, const void* data, std::size_t size) 
         fail(path, error);
     }
     // The new name too must be on the disk. File systems that cannot do this for a folder say so; nothing is lost.
-    Descriptor folder(open(std::filesystem::path(path).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    const std::string parent = std::filesystem::path(path).parent_path().string();
+    Descriptor folder(open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (folder.number() >= 0) fsync(folder.number());
 }
 

@@ -194,8 +194,8 @@ std::string text_of(const RunState& state) {
     if (state.task.empty())
         return "waiting for " + std::to_string(state.waiting) + " of " + std::to_string(state.all) +
                " flows that another process is at";
-    std::string text = "flow " + std::to_string(std::min(state.done + 1, state.all)) + " of " +
-                       std::to_string(state.all) + " (" + state.task + "): ";
+    std::string text = "flow " + std::to_string(std::min(state.done + 1, state.all)) + "/" + std::to_string(state.all) +
+                       ", " + state.task + ": ";
     if (!state.recording) return text + "starting";
     char number[64];
     std::snprintf(number, sizeof number, "drag %.2f", state.drag_coefficient);

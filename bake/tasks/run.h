@@ -36,7 +36,7 @@ struct RunSettings {
     bool part = false;       ///< progress is that of `which` alone; else the other tasks count as done
 };
 
-/// "flow 3 of 38 (direction 12): drag 1.09 +- 2.1 %"
+/// "flow 3/38, direction 12: drag 1.09 +- 2.1 %"
 std::string text_of(const RunState& state);
 
 /// Runs the tasks whose numbers `which` lists, in about that order, as many at a time as their `memory_limit` allows;

@@ -86,32 +86,41 @@ std::size_t Store::count(std::size_t tasks) const {
     return count;
 }
 
-bool Store::load(std::size_t number, const Task& task, TaskResult& result) {
-    std::vector<std::uint8_t> bytes;
+Store::Read Store::read(std::size_t number, const Task& task, TaskResult& result, std::string& why) const {
     const std::string path = path_of(number);
-    std::string why;
+    std::vector<std::uint8_t> bytes;
     try {
-        if (!read_whole(path, most_result, bytes)) return false;
+        if (!read_whole(path, most_result, bytes)) return Read::none;
         result = decode_result(bytes.data(), bytes.size(), key_of(body_, task.flow), patches_);
-        return true;
+        return Read::sound;
     } catch (const Error& error) {
         why = path + ": " + error.text();
     } catch (const FileError& error) {
         why = error.what();
     }
-    note(why + "; " + task.name + " is solved again");
-    return false;
+    why += "; " + task.name + " is solved again";
+    return Read::unsound;
+}
+
+bool Store::load(std::size_t number, const Task& task, TaskResult& result) {
+    std::string why;
+    const Read found = read(number, task, result, why);
+    if (found == Read::unsound) note(why);
+    return found == Read::sound;
 }
 
 Store::Claim Store::claim(std::size_t number, const Task& task, TaskResult& result) {
-    if (has(number) && load(number, task, result)) return Claim::done;
+    std::string why;
+    if (read(number, task, result, why) == Read::sound) return Claim::done;
     if (!locks_->try_lock(number)) return Claim::elsewhere;
-    // It may have appeared while nobody had the lock; and what is damaged goes, so that it is noted once.
-    if (has(number)) {
-        if (load(number, task, result)) {
-            locks_->unlock(number);
-            return Claim::done;
-        }
+    // It may have appeared while nobody had the lock.
+    const Read found = read(number, task, result, why);
+    if (found == Read::sound) {
+        locks_->unlock(number);
+        return Claim::done;
+    }
+    if (found == Read::unsound) {
+        note(why);
         std::error_code ignored;
         fs::remove_all(path_of(number), ignored);
     }

@@ -53,6 +53,8 @@ public:
     bool remove();
 
 private:
+    enum class Read { none, sound, unsound };
+    Read read(std::size_t number, const Task& task, TaskResult& result, std::string& why) const;
     std::string path_of(std::size_t number) const;
     void remove_leftovers(std::size_t number) const;
     void note(const std::string& text);

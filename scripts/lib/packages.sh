@@ -1,11 +1,13 @@
 # shellcheck shell=bash
 # Installs what is missing from Debian or Ubuntu packages. Source it after stages.sh.
 
-# shellcheck disable=SC2034  # these three are used by the scripts that source this file
+# shellcheck disable=SC2034  # these are used by the scripts that source this file
 packages_build=(g++ cmake ninja-build pkg-config libzstd-dev libtinygltf-dev libkissfft-dev libcli11-dev
     nlohmann-json3-dev python3 python3-matplotlib python3-numpy)
 # shellcheck disable=SC2034
 packages_test=(catch2 python3-pytest)
+# shellcheck disable=SC2034
+packages_full=(slurm-wlm munge openmpi-bin)
 
 # Always the system's Python: the packages above belong to it, and a version manager's python3 in PATH has none of them.
 # shellcheck disable=SC2034

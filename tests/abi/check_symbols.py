@@ -2,6 +2,7 @@
 
 usage: check_symbols.py include/frm.h libfrm.so NM READELF [further allowed library...]"""
 
+import pathlib
 import re
 import subprocess
 import sys
@@ -36,7 +37,8 @@ def main():
 
     dynamic = run(readelf, "-d", "-W", library)
     soname = re.findall(r"\(SONAME\).*\[(.*)\]", dynamic)
-    expected = f"libfrm.so.{parsed.version[0]}"
+    version = parsed.version or header.read(pathlib.Path(path).with_name("frm.h")).version
+    expected = f"{pathlib.Path(library).name.split('.so')[0]}.so.{version[0]}"
     if soname != [expected]:
         report.complain(f"the SONAME is {soname}, not {expected}")
     allowed = ALLOWED + sys.argv[5:]

@@ -26,7 +26,7 @@ class Header:
     functions: dict
     structs: dict
     constants: dict  # enumerators: name -> value
-    version: tuple
+    version: tuple  # None in a header that builds on frm.h
 
 
 class HeaderError(Exception):
@@ -113,10 +113,11 @@ def parse(text):
     version = []
     for part in ("MAJOR", "MINOR", "PATCH"):
         match = re.search(rf"^#define FRM_VERSION_{part} (\d+)$", text, flags=re.M)
-        if not match:
-            raise HeaderError(f"FRM_VERSION_{part} is missing")
-        version.append(int(match[1]))
-    return Header(functions, structs, constants, tuple(version))
+        if match:
+            version.append(int(match[1]))
+    if len(version) != (0 if '#include "frm.h"' in text else 3):
+        raise HeaderError("FRM_VERSION_MAJOR, _MINOR or _PATCH is missing")
+    return Header(functions, structs, constants, tuple(version) or None)
 
 
 class Report:

@@ -49,7 +49,7 @@ def test_version(good):
     ("bkae|no such command", ["bkae"]),
     ("--foo|no such option", ["--foo"]),
     ("MESH", ["bake"]),
-    ("--out", ["bake", "a.glb"]),
+    ("--out", ["bake", "plan", "a.glb"]),
     ("--spede|no such option", ["bake", "a.glb", "-o", "b.frm", "--spede", "1"]),
     ("--direcshun|no such option", ["flow", "a.glb", "--direcshun", "1,0,0", "--speed", "1"]),
     ("more.frm|not expected", ["info", "a.frm", "more.frm"]),

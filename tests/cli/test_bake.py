@@ -181,7 +181,7 @@ def test_yes_takes_the_size_as_it_is(good, tmp_path):
 
 
 @pytest.mark.parametrize("answers, status, words", [
-    ("y\n", 0, "drawn in millimetres, so that it is 0.1 m? [y/n]"), ("n\ny\n", 0, "Is 100 m right? [y/n]"),
+    ("y\n", 0, "drawn in centimetres, so that it is 1 m? [y/n]"), ("n\ny\n", 0, "Is 100 m right? [y/n]"),
     ("n\nn\n", 1, "--scale F"), ("\x04", 1, "--scale F")], ids=["scaled", "as it is", "neither", "end"])
 def test_on_a_terminal_it_asks(good, tmp_path, answers, status, words):
     (tmp_path / "mesh.glb").write_bytes(sized(100))
@@ -203,6 +203,6 @@ def test_on_a_terminal_it_asks(good, tmp_path, answers, status, words):
     assert words in said.decode()
     if status == 0:
         volume = good("info", tmp_path / "out.frm", "--json").json["volume"]
-        assert volume == pytest.approx(1e-3 if answers == "y\n" else 1e6, rel=1e-5)
+        assert volume == pytest.approx(1 if answers == "y\n" else 1e6, rel=1e-5)
     else:
         assert names(tmp_path) == ["mesh.glb"]

@@ -3,12 +3,13 @@
 # pkg-config and runs them; then moves the prefix and does it again.
 #
 # usage: install.sh BUILD_DIRECTORY WORK_DIRECTORY, with CMAKE, GENERATOR, CC, CXX, PKG_CONFIG, FRM_PYTHON, LIBDIR,
-# VERSION and HAS_PROGRAM (1 or 0) in the environment; tests/install/CMakeLists.txt sets them.
+# VERSION, HAS_PROGRAM and HAS_BAKE (1 or 0) in the environment; tests/install/CMakeLists.txt sets them.
 set -euo pipefail
 
 build=$1
 work=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+mesh=$here/../../samples/meshes/box.glb
 
 fail() {
     echo "wrong: $*" >&2
@@ -20,6 +21,8 @@ check_files() {
     local files=(include/frm.h "$LIBDIR/libfrm.so" "$LIBDIR/libfrm.so.${VERSION%%.*}" "$LIBDIR/libfrm.so.$VERSION"
         "$LIBDIR/cmake/frm/frmConfig.cmake" "$LIBDIR/cmake/frm/frmConfigVersion.cmake"
         "$LIBDIR/cmake/frm/frmTargets.cmake" "$LIBDIR/pkgconfig/frm.pc")
+    [ "$HAS_BAKE" != 1 ] || files+=(include/frm_bake.h "$LIBDIR/libfrm_bake.so" "$LIBDIR/libfrm_bake.so.${VERSION%%.*}"
+        "$LIBDIR/libfrm_bake.so.$VERSION" "$LIBDIR/pkgconfig/frm_bake.pc")
     [ "$HAS_PROGRAM" != 1 ] || files+=(bin/frm share/frm/python/frm/__init__.py share/frm/python/frm/report.py)
     for file in "${files[@]}"; do
         [ -e "$prefix/$file" ] || fail "$file is not installed"
@@ -43,7 +46,8 @@ check_program() {
 
 run_consumer() {
     local prefix=$1 program=$2 output
-    output=$(LD_LIBRARY_PATH="$prefix/$LIBDIR" "$program") || fail "$program failed: $output"
+    shift 2
+    output=$(LD_LIBRARY_PATH="$prefix/$LIBDIR" "$program" "$@") || fail "$program failed: $output"
     [ "$output" = "frm $VERSION" ] || fail "$program printed '$output', not 'frm $VERSION'"
     echo "ok: $program"
 }
@@ -51,7 +55,8 @@ run_consumer() {
 by_find_package() {
     local prefix=$1 out=$2 language
     if ! { "$CMAKE" -S "$here/consumer" -B "$out" -G "$GENERATOR" -DCMAKE_C_COMPILER="$CC" \
-        -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_PREFIX_PATH="$prefix" -DFRM_VERSION_WANTED="${VERSION%.*}" &&
+        -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_PREFIX_PATH="$prefix" -DFRM_VERSION_WANTED="${VERSION%.*}" \
+        -DFRM_HAS_BAKE="$HAS_BAKE" &&
         "$CMAKE" --build "$out"; } >"$out.log" 2>&1; then
         cat "$out.log"
         fail "the consumer by find_package does not build"
@@ -59,6 +64,7 @@ by_find_package() {
     for language in c cpp; do
         run_consumer "$prefix" "$out/consumer_$language"
     done
+    [ "$HAS_BAKE" != 1 ] || run_consumer "$prefix" "$out/consumer_bake" "$mesh"
 }
 
 by_pkg_config() {
@@ -71,6 +77,12 @@ by_pkg_config() {
     read -ra libs <<<"$("$PKG_CONFIG" --libs frm)"
     "$CC" -std=c99 "${cflags[@]}" "$here/consumer/consumer.c" -o "$out/consumer_c" "${libs[@]}"
     "$CXX" -std=c++11 "${cflags[@]}" "$here/consumer/consumer.cpp" -o "$out/consumer_cpp" "${libs[@]}"
+    if [ "$HAS_BAKE" = 1 ]; then
+        read -ra cflags <<<"$("$PKG_CONFIG" --cflags frm_bake)"
+        read -ra libs <<<"$("$PKG_CONFIG" --libs frm_bake)"
+        "$CC" -std=c99 "${cflags[@]}" "$here/consumer/consumer_bake.c" -o "$out/consumer_bake" "${libs[@]}"
+        run_consumer "$prefix" "$out/consumer_bake" "$mesh"
+    fi
     unset PKG_CONFIG_LIBDIR
     run_consumer "$prefix" "$out/consumer_c"
     run_consumer "$prefix" "$out/consumer_cpp"
