@@ -24,9 +24,11 @@ double squared_distance_to(const Box& box, const Vec3d& p) {
     return sum;
 }
 
+}  // namespace
+
 // Which corner, edge or face of the triangle is nearest, by the signs of areas (Ericson, Real-Time Collision Detection,
 // 5.1.5). A triangle without area ends at one of its edges.
-double squared_distance_to(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& p) {
+double squared_distance(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& p) {
     const auto squared = [](const Vec3d& v) { return dot(v, v); };
     const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -45,8 +47,6 @@ double squared_distance_to(const Vec3d& a, const Vec3d& b, const Vec3d& c, const
     const double all = 1 / (va + vb + vc);
     return squared(ap - ab * (vb * all) - ac * (vc * all));
 }
-
-}  // namespace
 
 Tree::Tree(const std::vector<Vec3d>& vertices, const std::vector<Triangle>& triangles)
     : vertices_(vertices), triangles_(triangles), order_(triangles.size()) {
@@ -124,7 +124,8 @@ double Tree::squared_distance(const Vec3d& point, double most) const {
         }
         for (std::uint32_t i = 0; i < node.count; ++i) {
             const Triangle& t = triangles_[order_[node.left + i]];
-            most = std::min(most, squared_distance_to(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]], point));
+            most =
+                std::min(most, frm::bake::squared_distance(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]], point));
         }
     }
     return most;

@@ -17,6 +17,9 @@ struct Box {
     }
 };
 
+/// Squared distance from a point to the triangle a, b, c.
+double squared_distance(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& point);
+
 /// Keeps references: vertices and triangles must outlive it. Finite coordinates only.
 class Tree {
 public:

@@ -76,9 +76,9 @@ double Deviation::mean(const Matrix3& g, double most, std::size_t points) const 
     return std::sqrt(sum / static_cast<double>(count));
 }
 
-Deviation::Family Deviation::family(const std::vector<Matrix3>& rotations, double most, std::size_t points,
+Deviation::Family Deviation::family(const std::vector<Matrix3>& rotations, const Family& most, std::size_t points,
                                     double outer) const {
-    const double limit = most * most, beyond = limit * (1 + 1e-9) + std::numeric_limits<double>::min();
+    const double limit = most.worst * most.worst, beyond = limit * (1 + 1e-9) + std::numeric_limits<double>::min();
     const std::size_t enough = rotations.size() / 12;
     std::vector<double> distances(rotations.size());
     Family result;
@@ -92,6 +92,7 @@ Deviation::Family Deviation::family(const std::vector<Matrix3>& rotations, doubl
         const double inward = outer - length(points_[i].at);
         std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(enough), distances.end());
         result.vertices = std::max(result.vertices, std::min(inward * inward, distances[enough]));
+        if (result.vertices > most.vertices * most.vertices) return {kInfinite, kInfinite};
     }
     return {std::sqrt(result.worst), std::sqrt(result.vertices)};
 }

@@ -27,12 +27,12 @@ public:
 
     /// Under a family of rotations: the largest distance of any point, and the largest over the vertices of what the
     /// twelfth part of the family that brings a vertex nearest comes to: a dent lies upon itself after a rotation about
-    /// it, but not after so many. Both infinite if a distance is more than `most`. A vertex at the distance `outer`
+    /// it, but not after so many. Both infinite if they come to more than `most`. A vertex at the distance `outer`
     /// from the centre is on the round shape by that: of a coarse sphere few rotations bring a corner to a corner.
     struct Family {
         double worst = 0, vertices = 0;
     };
-    Family family(const std::vector<Matrix3>& rotations, double most, std::size_t points, double outer) const;
+    Family family(const std::vector<Matrix3>& rotations, const Family& most, std::size_t points, double outer) const;
 
 private:
     struct Point {

@@ -91,7 +91,7 @@ private:
 
     bool is_family(const std::vector<Matrix3>& rotations, double outer, Deviation::Family& found) const {
         if (!(deviation_.worst(rotations.front(), chord_, kFewPoints) <= chord_)) return false;
-        found = deviation_.family(rotations, chord_, kQueries / rotations.size(), outer);
+        found = deviation_.family(rotations, {chord_, tolerance_}, kQueries / rotations.size(), outer);
         return found.worst <= chord_ && found.vertices <= tolerance_;
     }
 
@@ -228,7 +228,10 @@ private:
         // Axes of moments are a little off where the body is only nearly symmetric.
         const double quick = deviation_.worst(c.matrix(), 4 * tolerance_, kFewPoints);
         if (!(quick <= 4 * tolerance_)) return;
-        if (quick > 0.2 * tolerance_) c = polished(c);
+        if (quick > 0.2 * tolerance_ && polishes_left_ > 0) {
+            --polishes_left_;
+            c = polished(c);
+        }
         if (!(deviation_.worst(c.matrix(), 1.5 * tolerance_, kFewPoints) <= 1.5 * tolerance_)) return;
         std::vector<Matrix3> generators = result_.elements;
         generators.push_back(c.matrix());
@@ -274,6 +277,7 @@ private:
     PrincipalAxes principal_;
     std::vector<Vec3d> axes_;
     double tolerance_ = 0, chord_ = 0;
+    int polishes_left_ = 100;  // of a rough sphere every candidate would take one, and none would pass
 };
 
 // Whether a comes before b: the larger first component that differs by more than rounding.

@@ -60,6 +60,16 @@ Surface lopsided() {
 
 Surface thrown(const Surface& s) { return test::moved(test::rotated(s, {1, -2, 0.7}, 2.1), {12, -3, 0.4}); }
 
+// Flat pitched blades (each the same after half a turn about its own length), or ones bent aft as well.
+Surface propeller(int blades, double bend) {
+    Surface blade = test::moved(test::rotated(test::box({0.8, 0.2, 0.03}), {1, 0, 0}, 0.5), {0.6, 0, 0});
+    for (Vec3d& v : blade.vertices) v.z += bend * v.x * v.x;
+    Surface s = blade;
+    for (int i = 1; i < blades; ++i)
+        s = test::joined(s, test::rotated(blade, {0, 0, 1}, 2 * 3.14159265358979323846 * i / blades));
+    return s;
+}
+
 double off(const Matrix3& a, const Matrix3& b) {
     double largest = 0;
     for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, length(a.row[i] - b.row[i]));
@@ -77,11 +87,14 @@ void check_group(const Surface& surface, const Symmetry& symmetry) {
     REQUIRE(!symmetry.elements.empty());
     CHECK(off(symmetry.elements.front(), Matrix3{}) == 0);
     CHECK(symmetry.worst <= symmetry.tolerance);
+    double skew = 0, open = 0;
     for (const Matrix3& a : symmetry.elements) {
-        CHECK(off(a * transpose(a), Matrix3{}) < 1e-12);
+        skew = std::max(skew, off(a * transpose(a), Matrix3{}));
         for (const Matrix3& b : symmetry.elements)
-            CHECK(off(symmetry.elements[nearest(symmetry.elements, a * b)], a * b) < 1e-12);
+            open = std::max(open, off(symmetry.elements[nearest(symmetry.elements, a * b)], a * b));
     }
+    CHECK(skew < 1e-12);
+    CHECK(open < 1e-12);
     const Tree tree(surface.vertices, surface.triangles);
     double worst = 0;
     for (const Matrix3& g : symmetry.elements)
@@ -108,15 +121,22 @@ std::vector<Vec3d> directions(std::size_t count) {
 }
 
 void check_canonical(const Symmetry& symmetry, const std::vector<Matrix3>& carriers) {
-    for (const Vec3d& d : directions(60)) {
+    double lost = 0, skew = 0, moved = 0, turned = 0, apart = 0;
+    for (const Vec3d& d : directions(40)) {
         const Canonical c = canonical(symmetry, d);
-        CHECK(length(c.element * c.direction - d) < 1e-9);
-        CHECK(off(c.element * transpose(c.element), Matrix3{}) < 1e-12);
+        lost = std::max(lost, length(c.element * c.direction - d));
+        skew = std::max(skew, off(c.element * transpose(c.element), Matrix3{}));
         const Canonical again = canonical(symmetry, c.direction);
-        CHECK(length(again.direction - c.direction) < 1e-9);
-        CHECK(off(again.element, Matrix3{}) < 1e-7);
-        for (const Matrix3& g : carriers) CHECK(length(canonical(symmetry, g * d).direction - c.direction) < 1e-8);
+        moved = std::max(moved, length(again.direction - c.direction));
+        turned = std::max(turned, off(again.element, Matrix3{}));
+        for (const Matrix3& g : carriers)
+            apart = std::max(apart, length(canonical(symmetry, g * d).direction - c.direction));
     }
+    CHECK(lost < 1e-9);
+    CHECK(skew < 1e-12);
+    CHECK(moved < 1e-9);
+    CHECK(turned < 1e-7);
+    CHECK(apart < 1e-8);
 }
 
 void check_finite(const Surface& surface, std::size_t elements) {
@@ -182,6 +202,8 @@ TEST_CASE("finite symmetries have all their elements, wherever the body lies", "
     SECTION("a pyramid") { check_finite(cone(4), 8); }
     SECTION("tetrahedron") { check_finite(tetrahedron(), 24); }
     SECTION("icosahedron") { check_finite(test::icosphere(1, 0), 120); }
+    SECTION("three blades: rotations without reflections") { check_finite(propeller(3, 0), 6); }
+    SECTION("four bent blades") { check_finite(propeller(4, 0.3), 4); }
     SECTION("none") { check_finite(lopsided(), 1); }
     SECTION("two bodies side by side") {
         check_finite(test::joined(test::moved(test::box({0.4, 0.3, 0.2}), {1, 0, 0}), test::box({0.4, 0.3, 0.2})), 8);
@@ -262,4 +284,9 @@ TEST_CASE("symmetry of large meshes is found in the time of a look", "[symmetry]
     CHECK(seconds(test::icosphere(1, 5)) < 5);
     CHECK(seconds(tessellate(test::box({1, 1, 1}), 0.02, 20000).surface) < 10);
     CHECK(seconds(tessellate(sample("paddle.glb"), 1e-4, 200000).surface) < 10);
+    // Rough by as much as a chord may be: anything might be an axis, and nothing is. 1.1 s; 7 s without early ends.
+    Surface rough = test::icosphere(1, 5);
+    for (std::size_t i = 0; i < rough.vertices.size(); ++i)
+        rough.vertices[i] = rough.vertices[i] * (1 + 0.015 * std::sin(1e3 * static_cast<double>(i * i % 1009)));
+    CHECK(seconds(rough) < 10);
 }

@@ -1,0 +1,128 @@
+// Forces on regions that come from an image of the direction are those of the direction itself.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bake/mesh/gltf.h"
+#include "bake/mesh/repair.h"
+#include "bake/regions/carry.h"
+#include "bake/regions/regions.h"
+#include "bake/regions/tessellate.h"
+#include "bake/symmetry/symmetry.h"
+#include "tests/support/catch.h"
+#include "tests/support/shapes.h"
+
+using namespace frm;
+using namespace frm::bake;
+
+namespace {
+
+Surface sample(const std::string& name) {
+    const std::filesystem::path samples =
+        std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "samples" / "meshes";
+    return repair(load_gltf((samples / name).string()), name).surface;
+}
+
+// What a flow stands in for here: pressed where the stream meets a triangle, half sucked at the lee, and more so far
+// from the centre, so that place matters too.
+std::vector<Vec3d> forces(const Surface& s, const Regions& regions, const Vec3d& centre, const Vec3d& stream) {
+    std::vector<Vec3d> result(regions.count);
+    for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+        const Vec3d n = cross(s.corner(t, 1) - s.corner(t, 0), s.corner(t, 2) - s.corner(t, 0)) * 0.5;
+        const double along = dot(n, stream), size = length(n);
+        const Vec3d off = (s.corner(t, 0) + s.corner(t, 1) + s.corner(t, 2)) / 3.0 - centre;
+        const double place = 1 + dot(off, stream) / (length(off) + 1e-9);
+        if (size > 0)
+            result[regions.region[t]] += n * (along * along / (size * size) * (along < 0 ? -1.0 : 0.5) * place);
+    }
+    return result;
+}
+
+// The root mean square error of regions' forces, as a share of the root mean square of the forces.
+double error_of(const Surface& s, const Regions& regions, double* of_whole = nullptr) {
+    const Symmetry symmetry = find_symmetry(s);
+    const std::vector<Vec3d> streams = {{0.2, 0.3, 0.93}, {-0.6, 0.5, -0.62}, {0.1, -0.9, 0.42}, {-0.8, -0.6, 0}};
+    std::vector<Canonical> homes;
+    std::vector<Matrix3> elements;
+    for (const Vec3d& d : streams) {
+        homes.push_back(canonical(symmetry, d));
+        elements.push_back(homes.back().element);
+    }
+    const CarriedRegions carried = carry_regions(s, regions, elements, symmetry.centre, symmetry.tolerance);
+    double difference = 0, all = 0;
+    for (std::size_t i = 0; i < streams.size(); ++i) {
+        const std::vector<Vec3d> parts = forces(s, carried.parts, symmetry.centre, homes[i].direction);
+        std::vector<Vec3d> result(regions.count);
+        for (std::uint32_t p = 0; p < carried.parts.count; ++p)
+            result[carried.region[i][p]] += homes[i].element * parts[p];
+        const std::vector<Vec3d> expected = forces(s, regions, symmetry.centre, streams[i] / length(streams[i]));
+        Vec3d whole, whole_expected;
+        for (std::uint32_t l = 0; l < regions.count; ++l) {
+            difference += dot(result[l] - expected[l], result[l] - expected[l]);
+            all += dot(expected[l], expected[l]);
+            whole += result[l];
+            whole_expected += expected[l];
+        }
+        if (of_whole) *of_whole = std::max(*of_whole, length(whole - whole_expected) / length(whole_expected));
+    }
+    return std::sqrt(difference / all);
+}
+
+}  // namespace
+
+TEST_CASE("carried forces of regions are those of the direction", "[carry]") {
+    for (const char* name : {"paddle.glb", "plate.glb", "canoe.glb", "box.glb", "sphere.glb"}) {
+        const Surface s = sample_triangles(sample(name));
+        double whole = 0;
+        const double error = error_of(s, split_regions(s, 40), &whole);
+        INFO(name << ": regions " << error << ", whole " << whole);
+        // The whole force is off only by what the surface is off its image, that of regions also by the triangles at
+        // their borders: a region of 50 triangles has some 25 of them there, each off by a part of its area either way.
+        CHECK(whole < 0.01);
+        CHECK(error < 0.1);
+    }
+    // And of finer triangles less.
+    const Surface box = test::box({0.4, 0.3, 0.2});
+    const double coarse = error_of(sample_triangles(box, 500), split_regions(sample_triangles(box, 500), 20));
+    const Surface fine = sample_triangles(tessellate(box, 0.012, 20000).surface, 20000);
+    CHECK(error_of(fine, split_regions(fine, 20)) < 0.5 * coarse);
+}
+
+TEST_CASE("parts are of one region each, and all go somewhere", "[carry]") {
+    const Surface s = sample_triangles(sample("plate.glb"));
+    const Regions regions = split_regions(s, 24);
+    const Symmetry symmetry = find_symmetry(s);
+    REQUIRE(symmetry.elements.size() == 8);
+    const CarriedRegions all = carry_regions(s, regions, symmetry.elements, symmetry.centre, symmetry.tolerance);
+    CHECK(all.parts.region.size() == s.triangles.size());
+    CHECK(all.parts.count <= s.triangles.size());
+    CHECK(all.parts.count > regions.count);
+    for (std::size_t t = 0; t < s.triangles.size(); ++t)
+        CHECK(all.region[0][all.parts.region[t]] == regions.region[t]);  // the identity comes first
+
+    // By the identity alone the parts are the regions.
+    const CarriedRegions same = carry_regions(s, regions, {Matrix3{}}, symmetry.centre, symmetry.tolerance);
+    CHECK(same.parts.count == regions.count);
+    CHECK(same.parts.region == regions.region);
+    CHECK_THROWS_AS(carry_regions(s, {{0, 1}, 2}, {Matrix3{}}, symmetry.centre, 1), BakeError);
+}
+
+TEST_CASE("the sides of a blade thinner than the tolerance are not mixed up", "[carry]") {
+    const Surface s = sample_triangles(test::box({1, 0.6, 0.002}), 1000);
+    Regions sides{{}, 3};
+    for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+        const double n = cross(s.corner(t, 1) - s.corner(t, 0), s.corner(t, 2) - s.corner(t, 0)).z;
+        sides.region.push_back(std::fabs(n) < 1e-9 ? 2 : n > 0 ? 0 : 1);
+    }
+    const CarriedRegions carried =
+        carry_regions(s, sides, {mirror_across({1, 0, 0}), mirror_across({0, 0, 1})}, {}, 0.005);
+    REQUIRE(carried.parts.count == 3);
+    for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+        const std::uint32_t p = carried.parts.region[t], side = sides.region[t];
+        CHECK(carried.region[0][p] == side);
+        CHECK(carried.region[1][p] == (side == 2 ? 2 : 1 - side));
+    }
+}
