@@ -45,8 +45,8 @@ Vec3d longest_across(const bake::Surface& surface, const Vec3d& direction) {
     return best;
 }
 
-/// Where nothing but a spin drives the flow, the direction only says whose projected area the reference length is of: the
-/// axis of the mesh, away from the spin's, along which the mesh looks largest.
+/// Where nothing but a spin drives the flow, the direction only says whose projected area the reference length is of:
+/// the axis of the mesh, away from the spin's, along which the mesh looks largest.
 Vec3d direction_for_spin(const bake::Surface& surface, const Vec3d& spin) {
     const bake::SurfaceProperties shape = bake::measure(surface);
     const Vec3d size = shape.high - shape.low;

@@ -36,9 +36,9 @@ Room room(int level, int levels, int wake_level, bool section) {
             between(inner.behind, outer.behind, share)};
 }
 
-// Blocks that turn with the body, in its largest distance from the axis: beside from the axis, along it from the body. In
-// the turning frame the water far away is the faster the farther, so there is no room for ten sizes. What other boxes do
-// to the torque is in docs/flow.md.
+// Blocks that turn with the body, in its largest distance from the axis: beside from the axis, along it from the body.
+// In the turning frame the water far away is the faster the farther, so there is no room for ten sizes. What other
+// boxes do to the torque is in docs/flow.md.
 struct TurningRoom {
     double beside, along;
 };

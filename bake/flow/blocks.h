@@ -14,8 +14,8 @@ struct BlockRequest {
     bool section = false;  ///< periodic across z
     int layers = 1;        ///< section: finest cells across z, 1 or a multiple of the coarsest cell
     bool still = false;    ///< no stream: as much room behind the body as ahead of it
-    /// Where the blocks turn with the body about an axis along z: its largest distance from the axis, finest cells, and a
-    /// point of the axis.
+    /// Where the blocks turn with the body about an axis along z: its largest distance from the axis, finest cells, and
+    /// a point of the axis.
     double radius = 0;
     Vec3d axis;
 };

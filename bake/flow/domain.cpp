@@ -229,8 +229,8 @@ Walls walls_of(const std::vector<Segment>& segments, const Domain& d) {
                     number(static_cast<double>(limit) / mib) + " MiB; lower the resolution");
 }
 
-/// The wall of a body that its own turning leaves where it is may move. Any other sweeps over nodes, and is solved in the
-/// frame that turns with it, in which a stream would go round.
+/// The wall of a body that its own turning leaves where it is may move. Any other sweeps over nodes, and is solved in
+/// the frame that turns with it, in which a stream would go round.
 void plan_spin(const Surface& surface, const FlowCase& c, Domain& d) {
     const double rate = length(c.spin);
     if (rate == 0) return;

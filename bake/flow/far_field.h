@@ -1,5 +1,5 @@
-// What surrounds the box: the uniform stream ahead and beside it, an open end behind it; or, in the frame that turns with
-// the body, water that stands still and so goes round.
+// What surrounds the box: the uniform stream ahead and beside it, an open end behind it; or, in the frame that turns
+// with the body, water that stands still and so goes round.
 #pragma once
 
 #include <array>
@@ -35,14 +35,14 @@ std::vector<float> relaxation_times(const Grid& grid, double base, double sponge
 std::array<float, direction_count> still_populations(const Turning& turning, float x, float y);
 
 /// Fills all ghosts with water at rest, and, after the collision has run over a row, what of it is in the water that is
-/// held at rest: its two ghosts and all cells farther than `reach` cells from the axis, where the water is the faster the
-/// farther. To first order that is the characteristic condition again; where the flow leaves the box, the cells before
-/// are thick enough to follow.
+/// held at rest: its two ghosts and all cells farther than `reach` cells from the axis, where the water is the faster
+/// the farther. To first order that is the characteristic condition again; where the flow leaves the box, the cells
+/// before are thick enough to follow.
 void fill_still(const Grid& grid, Populations& populations, const Turning& turning);
 void close_row_still(const Grid& grid, Populations& populations, std::size_t row, const Turning& turning, double reach);
 
-/// Relaxation times [row][pitch] of a box with `sponge` cells of raised viscosity before the water that is held at rest.
-/// Water at rest turns as a whole and does not feel it.
+/// Relaxation times [row][pitch] of a box with `sponge` cells of raised viscosity before the water that is held at
+/// rest. Water at rest turns as a whole and does not feel it.
 std::vector<float> still_relaxation_times(const Grid& grid, double base, double sponge, const Turning& turning,
                                           double reach);
 

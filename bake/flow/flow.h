@@ -20,9 +20,9 @@ struct FlowCase {
     double viscosity = 1.0e-6;  ///< kinematic, m^2/s, > 0
     double density = 1000;      ///< kg/m^3, > 0
     double resolution = 24;     ///< finest cells over the reference length, 4 to 512
-    double reference_length =
-        0;  ///< m; 0: the square root of the projected area (section: the extent across the stream), but for bodies that
-            ///< turn at most twice the largest distance from the axis
+    /// m; 0: the square root of the projected area (section: the extent across the stream), but for bodies that turn at
+    /// most twice the largest distance from the axis.
+    double reference_length = 0;
     double start_up = 10;  ///< discarded, in reference lengths travelled by the stream (spin alone: the fastest point)
     double duration = 20;  ///< recorded at most, in the same
     double turn = 0;  ///< degrees by which the lattice is turned about the stream from where it would be put (about

@@ -72,9 +72,9 @@ public:
     const std::vector<Crossing>& crossings() const { return crossings_; }
 
 private:
-    /// A link that only touches an edge goes into the body and out of it at one place, or misses it, as the nudge has it:
-    /// on a box along the lattice that makes fins of half of its edges, and of a cube that turns the force that should
-    /// be none 15 % of torque over radius. In a stream they are kept (lift 4 % of a cube's drag): to be taken
+    /// A link that only touches an edge goes into the body and out of it at one place, or misses it, as the nudge has
+    /// it: on a box along the lattice that makes fins of half of its edges, and of a cube that turns the force that
+    /// should be none 15 % of torque over radius. In a stream they are kept (lift 4 % of a cube's drag): to be taken
     /// out there too when maps are baked anew.
     void drop_grazing() {
         std::size_t kept = 0;

@@ -96,7 +96,8 @@ void Nest::set_push(Level& level, std::uint64_t steps) const {
     level.ripple = domain_.finest().periodic && domain_.finest().nz > 1 ? level.collision.push[1] : 0.0f;
 }
 
-/// Of the step of a block that begins at `step`; at rest where the frame does not turn. The spin grows as the stream does.
+/// Of the step of a block that begins at `step`; at rest where the frame does not turn. The spin grows as the stream
+/// does.
 Turning Nest::turning(std::size_t l, std::uint64_t step) const {
     Turning t;
     if (!domain_.turning) return t;

@@ -22,8 +22,8 @@ public:
                float smagorinsky);
 
     // Each of the following is a number of independent tasks, so that threads can share them; no result depends on who
-    // does which. `turning` is of the step and the block that is read or written; in a frame that turns, velocities pass
-    // as they are in the middle of a step, because a step's force is not the same in both blocks.
+    // does which. `turning` is of the step and the block that is read or written; in a frame that turns, velocities
+    // pass as they are in the middle of a step, because a step's force is not the same in both blocks.
 
     /// Before observe: what was new is old.
     void turn() { newest_ = 1 - newest_; }

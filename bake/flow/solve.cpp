@@ -29,9 +29,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double blockage_factor = 1.8, section_blockage_factor = 0;
 constexpr double least_statistics = 1e-3, least_known = 0.5;  // lengths under which a mean says nothing
 constexpr double section_blockage = 0.01;  // three times the room lowers the drag of sections at Re 100 by so much
-constexpr double turning_blockage =
-    0.01;                           // a box of 5 by 3 radii instead of 4 by 2.5 changes the torque by at most that
-constexpr double grid_share = 0.5;  // of the difference to the run on half the resolution
+constexpr double turning_blockage = 0.01;  // more room, 5 by 3 radii, changes the torque by so much
+constexpr double grid_share = 0.5;         // of the difference to the run on half the resolution
 constexpr std::uint64_t guard_steps = 64;
 constexpr double progress_seconds = 0.3;
 constexpr double picture_every = 0.5;                  // lengths
