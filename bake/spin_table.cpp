@@ -62,7 +62,7 @@ void fill_spin(Map& map, const BakePlan& plan, const std::vector<TaskResult>& re
             for (const Matrix3& g : all) {
                 if (length(carried(g, spin) - axes.direction(d)) >= same) continue;
                 const FlowMeans means = means_of(results[k]);
-                const Transfer transfer(carrier.surface, carrier.patches, carrier.regions, plan.symmetry.centre, g);
+                const Transfer transfer(carrier, g);
                 for (const Transfer::Share& s : transfer.shares()) {
                     force[s.region].pressure += (g * means.patch[s.patch].pressure) * s.share;
                     force[s.region].friction += (g * means.patch[s.patch].friction) * s.share;

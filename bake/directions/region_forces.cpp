@@ -17,11 +17,11 @@ bool same(const Matrix3& a, const Matrix3& b) { return a.row == b.row; }
 
 }  // namespace
 
-RegionForces::RegionForces(const Carrier& carrier, std::vector<FlowMeans> means, const std::vector<Vec3d>& directions,
-                           double size, double spacing)
+RegionForces::RegionForces(const Carrier& carrier, const Symmetry& symmetry, std::vector<FlowMeans> means,
+                           const std::vector<Vec3d>& directions, double size, double spacing)
     : carrier_(carrier),
       means_(std::move(means)),
-      known_(carrier.symmetry, solved_directions(means_, directions, carrier.symmetry.centre), size, spacing) {
+      known_(symmetry, solved_directions(means_, directions, carrier.centre), size, spacing) {
     std::vector<FitSite> sites;
     std::vector<FitValue> swings;
     for (std::uint32_t k = 0; k < means_.size(); ++k) {
@@ -46,8 +46,7 @@ RegionForces::RegionForces(const Carrier& carrier, std::vector<FlowMeans> means,
 const Transfer& RegionForces::transfer(const Matrix3& g) {
     for (const auto& known : transfers_)
         if (same(known->g(), g)) return *known;
-    transfers_.push_back(
-        std::make_unique<Transfer>(carrier_.surface, carrier_.patches, carrier_.regions, carrier_.symmetry.centre, g));
+    transfers_.push_back(std::make_unique<Transfer>(carrier_, g));
     return *transfers_.back();
 }
 

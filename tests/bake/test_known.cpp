@@ -4,9 +4,6 @@
 #include "bake/directions/fit.h"
 #include "bake/directions/images.h"
 #include "bake/directions/known.h"
-#include "bake/directions/transfer.h"
-#include "bake/regions/regions.h"
-#include "bake/regions/tessellate.h"
 #include "core/map/directions.h"
 #include "tests/support/catch.h"
 #include "tests/support/shapes.h"
@@ -160,21 +157,4 @@ TEST_CASE("bodies of revolution are solved along half a circle, spheres once", "
             CHECK(length(g * Vec3d{1, 0, 0} - image.direction) < 1e-9);
             CHECK(std::fabs(determinant(g)) == Approx(1));
         }
-}
-
-TEST_CASE("forces that are carried over are all there, each where it belongs", "[directions]") {
-    const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
-    const Regions regions = split_regions(box, 12), patches = split_regions(box, 60);
-    const auto place = region_properties(box, regions), from = region_properties(box, patches);
-    const Symmetry symmetry = of_a_box();
-    for (const Matrix3& g : symmetry.elements) {
-        const Transfer transfer(box, patches, regions, symmetry.centre, g);
-        std::vector<double> sum(patches.count, 0.0);
-        for (const Transfer::Share& s : transfer.shares()) {
-            sum[s.patch] += s.share;
-            // A patch's image lies in the region, so it looks the same way.
-            CHECK(dot(g * from[s.patch].normal, place[s.region].normal) > 0.5);
-        }
-        for (const double share : sum) CHECK(share == Approx(1));
-    }
 }
