@@ -150,8 +150,8 @@ FRM_API frm_status FRM_CALL frm_bake_get_map(frm_bake bake, void *data, uint64_t
  * FRM_ERROR_FILE. path is UTF-8. [owner] */
 FRM_API frm_status FRM_CALL frm_bake_write_map(frm_bake bake, const char *path);
 
-/* Takes the finished flows out of the work folder, unless another process uses them. To be called when the map is safe.
- * FRM_ERROR_STATE unless done. [owner] */
+/* Takes the finished flows out of the work folder, unless another process uses them, and then the folder if nothing
+ * else is in it. To be called when the map is safe. FRM_ERROR_STATE unless done. [owner] */
 FRM_API frm_status FRM_CALL frm_bake_clear_work(frm_bake bake);
 
 #ifdef __cplusplus

@@ -1,5 +1,7 @@
 #include "bake/api/job.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -49,6 +51,7 @@ void Job::require_not_running() {
 void Job::plan(const BakeOptions& options, const std::string& work, frm_bake_plan_info& info) {
     require_not_running();
     store_.reset();
+    work_ = work;
     plan_.reset();
     first_.reset();
     map_.clear();
@@ -185,7 +188,7 @@ void Job::write(const std::string& path) {
 void Job::clear() {
     map();
     if (thread_.joinable()) thread_.join();
-    if (store_) store_->remove();
+    if (store_ && store_->remove()) rmdir(work_.c_str());  // which fails where others have something there
     store_.reset();
 }
 

@@ -95,6 +95,7 @@ END
 }
 
 node_is_idle() { [ "$(sinfo -h -o %t)" = idle ]; }
+job_runs() { [ -n "$(squeue -h -t R -j "$1")" ]; }
 job_is_gone() { [ -z "$(squeue -h -j "$1" 2>/dev/null)" ]; }
 flows() { find "$1" -name 'task-*.flow' | wc -l; }
 
@@ -110,7 +111,7 @@ by_slurm() {
     tasks=$("$frm" bake merge "$work/jobs" -o "$work/slurm.frm" 2>/dev/null) && fail "merged without a flow"
     id=$(solve_array "$tasks")
     # A task is lost: killed in the middle by its number in the array.
-    until_true 60 eval '[ -n "$(squeue -h -t R -j '"$id"')" ]' || fail "no task of the array runs"
+    until_true 60 job_runs "$id" || fail "no task of the array runs"
     victim=$(squeue -h -t R -r -j "$id" -o %K | head -n 1)
     scancel --signal=KILL "${id}_$victim"
     until_true 300 job_is_gone "$id" || fail "the array does not end"
