@@ -23,7 +23,6 @@ RegionForces::RegionForces(const Carrier& carrier, const Symmetry& symmetry, std
       means_(std::move(means)),
       known_(symmetry, solved_directions(means_, directions, carrier.centre), size, spacing) {
     std::vector<FitSite> sites;
-    std::vector<FitValue> swings;
     for (std::uint32_t k = 0; k < means_.size(); ++k) {
         for (const Image& image : known_.images_of(k)) {
             std::vector<PatchForce> mean(carrier_.regions.count);
@@ -37,10 +36,11 @@ RegionForces::RegionForces(const Carrier& carrier, const Symmetry& symmetry, std
             }
             site_means_.push_back(std::move(mean));
             sites.push_back({image.direction, k});
-            swings.push_back({means_[k].rms, 0, 0, 0, 0, 0});
         }
     }
-    rms_fit_ = std::make_unique<DirectionFit>(sites, choose_model(sites, swings));
+    // Of a record a few sheddings long the strength is known to some tenths: no fit of it can be chosen by how well it
+    // predicts. Each flow keeps its own.
+    rms_fit_ = std::make_unique<DirectionFit>(sites, FitModel{1, 1e-2});
 }
 
 const Transfer& RegionForces::transfer(const Matrix3& g) {
