@@ -75,7 +75,6 @@ private:
     /// A link that only touches an edge goes into the body and out of it at one place, or misses it, as the nudge has
     /// it: on a box along the lattice that makes fins of half of its edges. With them a cube face-on at Re 1e4 had a drag
     /// of 1.02, 1.10, 1.085 at 16, 24, 32 cells, without 0.93, 1.01, 1.04.
-    /// lattice's planes than a little beside them.
     void drop_grazing() {
         std::size_t kept = 0;
         for (std::size_t n = 0; n < hits_.size();) {
