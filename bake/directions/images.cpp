@@ -12,6 +12,9 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double same_direction = 1e-6;  // chord
 constexpr int turns_about_stream = 4;    // of a sphere's images: its own asymmetry averages out
 
+/// Of a sphere's images: its forces turn with the stream, so more of them say nothing new.
+constexpr double most_frequency = 3;
+
 /// Files isometries under the direction that they make of `direction`.
 class Gatherer {
 public:
@@ -45,7 +48,7 @@ Matrix3 turning(const Vec3d& a, const Vec3d& b) {
 std::vector<Image> images(const Symmetry& symmetry, const Vec3d& direction, double spacing) {
     Gatherer out(direction);
     if (symmetry.kind == SymmetryKind::spherical) {
-        const auto frequency = static_cast<std::uint32_t>(std::clamp(std::ceil(std::sqrt(pi) / spacing), 1.0, 8.0));
+        const auto frequency = static_cast<std::uint32_t>(std::clamp(std::ceil(std::sqrt(pi) / spacing), 1.0, most_frequency));
         const DirectionSet lattice(frequency);
         const auto about_stream = [&](const Matrix3& first) {
             const Vec3d e = first * direction;

@@ -1,11 +1,14 @@
 #include "bake/directions/transfer.h"
 
+#include <algorithm>
 #include <map>
 
 #include "bake/error.h"
 
 namespace frm::bake {
 namespace {
+
+constexpr std::size_t enough_triangles = 4000;
 
 std::uint32_t image_of(const Landing& landing, std::size_t triangle, const Vec3d& centre, const Matrix3& g) {
     const Facing& from = landing.facing_of(triangle);
@@ -16,9 +19,13 @@ std::uint32_t image_of(const Landing& landing, std::size_t triangle, const Vec3d
 
 Transfer::Transfer(const Carrier& carrier, const Matrix3& g) : g_(g) {
     const Surface& s = carrier.surface;
+    // Of a mesh with more triangles than that every second, third ... of each patch.
+    const std::size_t stride = std::max<std::size_t>(1, s.triangles.size() / enough_triangles);
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> parts;
     std::vector<double> whole(carrier.patches.count, 0.0);
+    std::vector<std::size_t> seen(carrier.patches.count, 0);
     for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+        if (seen[carrier.patches.region[t]]++ % stride) continue;
         const double area = 0.5 * length(cross(s.corner(t, 1) - s.corner(t, 0), s.corner(t, 2) - s.corner(t, 0)));
         const std::uint32_t patch = carrier.patches.region[t];
         parts[{patch, carrier.regions.region[image_of(carrier.landing, t, carrier.centre, g)]}] += area;
