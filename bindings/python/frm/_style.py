@@ -42,6 +42,9 @@ td { font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 table.many { width: auto; font-size: .84rem; }
 .many th, .many td { width: auto; padding-right: 1.2rem; white-space: nowrap; }
 code { font: .88em ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; overflow-wrap: anywhere; }
+.flows .many th, .flows .many td { padding-right: .8rem; font-size: .8rem; }
+.strips figure { margin: .3rem 0 1rem; }
+.strips figcaption { font-size: .84rem; max-width: none; margin-top: 0; }
 footer { margin-top: 3rem; padding-top: .8rem; border-top: 1px solid var(--rule); color: var(--quiet);
   font-size: .85rem; }
 @media (max-width: 40rem) { main { padding-top: 1.3rem; }
