@@ -73,7 +73,8 @@ struct BakeReport {
         double uncertainty = 0;       ///< standard error of the mean drag (a spin's torque), share
         // Of a stream's mean force, among those of its speed:
         std::vector<Vec3d> images;  ///< where the body's symmetry makes it known, its own direction first
-        double left_out = -1;  ///< its error as all others predict it, share of the largest force; negative: a spin
+        double left_out =
+            -1;  ///< its error as all others predict it, share of the largest force; negative: there are none
     };
     std::vector<Flow> flows;           ///< one a task
     DirectionErrors direction_errors;  ///< of the base speed's means, each flow predicted from the others

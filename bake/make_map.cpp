@@ -78,7 +78,7 @@ void describe(BakeReport& report, const std::vector<std::size_t>& tasks, const K
     for (std::size_t i = 0; i < tasks.size(); ++i) {
         BakeReport::Flow& flow = report.flows[tasks[i]];
         for (const Image& image : known.images_of(i)) flow.images.push_back(image.direction);
-        flow.left_out = known.error_of(i);
+        if (tasks.size() > 1) flow.left_out = known.error_of(i);
     }
 }
 

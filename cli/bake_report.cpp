@@ -123,8 +123,12 @@ Json map_of(const MadeMap& made) {
 void add_errors(Json& j, const MadeMap& made) {
     const bake::BakePlan& plan = made.plan;
     const bake::RegionErrors regions = bake::RegionJudge(plan.surface).measure(plan.regions);
-    j["errors"] = {{"direction_rms", made.report.direction_errors.rms},
-                   {"direction_worst", made.report.direction_errors.worst},
+    // A single flow, all round by symmetry, has no others to be predicted from.
+    const bake::DirectionErrors& between = made.report.direction_errors;
+    const bool known = std::count_if(made.report.flows.begin(), made.report.flows.end(),
+                                     [](const auto& flow) { return flow.left_out >= 0; }) > 0;
+    j["errors"] = {{"direction_rms", known ? between.rms : none},
+                   {"direction_worst", known ? between.worst : none},
                    {"rounding", made.map.facts.quantisation_error},
                    {"uncertainty", made.report.uncertainty},
                    {"added_mass", made.map.has_added_mass ? made.report.added_mass_error : none},

@@ -100,7 +100,7 @@ def test_page(tmp_path):
     text = text_of(page)
     for words in ("&lt;a&gt; box.glb", "1 &lt; 2 cells", "off by about 4.3 % of the largest (at worst 6 %)",
                   "Within all that standard quality asks; a warning below", "2 haptic regions", "31.2 kB", "20 N",
-                  "The drag goes from 10 N towards", "the force is known in 6, and the map has it in 18",
+                  "The drag goes from 10 N towards", "makes the force known in 6. The map has it in 18",
                   "3 flows took 36 s", "towards (−1.00, 0, 0) · drag coefficient 1.1 ± 3.1 %",
                   "3.2 periods of shedding", "statistics 3 %, far field 0.78 %", "48 elements", "0.4 %"):
         assert words in text, words

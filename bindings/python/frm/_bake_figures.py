@@ -62,7 +62,7 @@ def _draw_body(axes, bake: Bake, view) -> None:
     shade = 0.62 + 0.38 * np.maximum(normal[order] @ (light / np.linalg.norm(light)), 0)
     colours = region_colours(len(begin) - 1)[region[order]] * shade[:, None]
     flat = np.stack([corners[order] @ right, corners[order] @ up], axis=2)
-    axes.add_collection(PolyCollection(flat, facecolors=colours, edgecolors=colours, linewidths=0.3))
+    axes.add_collection(PolyCollection(flat, facecolors=colours, edgecolors=colours, linewidths=0.7))
     sources = bake.surface("sources")
     seen = sources[sources[:, 3:] @ eye > 0.05, :3]
     axes.plot(seen @ right, seen @ up, "o", color=INK, markersize=3.2 if len(sources) < 100 else 1.6,
@@ -103,8 +103,8 @@ def body(bake: Bake) -> str:
         cells = figure.subplots(3, 2, gridspec_kw={"width_ratios": [7, 0.7]})
         pairs = [(row[0], row[1]) for row in cells]
     else:
-        figure = canvas(7.6, 3.4)
-        cells = figure.subplots(2, 3, gridspec_kw={"height_ratios": [3, 0.7]})
+        figure = canvas(7.6, 3.1)
+        cells = figure.subplots(2, 3, gridspec_kw={"height_ratios": [3, 0.8]})
         pairs = list(zip(cells[0], cells[1]))
     for (axes, triad), view in zip(pairs, three):
         _draw_body(axes, bake, view)
@@ -170,8 +170,9 @@ def _images(bake: Bake):
 @styled
 def directions(bake: Bake) -> str:
     """The mean drag over the sphere with what was solved, and how well each flow is predicted by the others."""
-    figure = canvas(7.6, 6.6)
-    above, below = figure.subplots(2, 1)
+    judged = [flow for flow in bake.base if flow["left_out"] is not None]
+    figure = canvas(7.6, 6.6 if judged else 3.3)
+    above, *more = np.ravel(figure.subplots(2 if judged else 1, 1))
     image = _field(above, bake.map["frequency"], bake.drag, AMOUNT, Normalize(0, max(float(bake.drag.max()), 1e-12)))
     _globe(above, "Mean drag in the map, and where it was solved")
     figure.colorbar(image, ax=above, shrink=0.75, pad=0.01, label="N")
@@ -182,9 +183,12 @@ def directions(bake: Bake) -> str:
     above.plot(*mollweide(solved), "o", markersize=6, color=AXIS_COLOURS["x"], markeredgecolor="white",
                markeredgewidth=0.8, zorder=8, label="solved")
     above.legend(loc="lower left", bbox_to_anchor=(-0.01, -0.04), fontsize=8)
-    errors = np.array([100 * flow["left_out"] for flow in bake.base])
+    if not judged:
+        return png(figure, 150)
+    below = more[0]
+    errors = np.array([100 * flow["left_out"] for flow in judged])
     norm = Normalize(0, max(float(errors.max()), 1e-3))
-    for flow, error in zip(bake.base, errors):
+    for flow, error in zip(judged, errors):
         x, y = mollweide(bake.array(flow["images"]))
         below.scatter(x, y, c=np.full(len(x), error), s=26, cmap=ERROR, norm=norm, edgecolors=QUIET, linewidths=0.4,
                       zorder=7)

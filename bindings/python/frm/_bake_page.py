@@ -55,6 +55,8 @@ def _judged(bake: Bake):
 
 
 def _verdict(error, budget) -> str:
+    if error is None:
+        return "not known"
     if budget is None:
         return "nothing was asked"
     return "within" if error <= budget else "not within"
@@ -73,7 +75,7 @@ def _notes(bake: Bake) -> list[str]:
                      f"number: {number(least['reynolds_solved'])} was solved for {number(least['reynolds'])}. A finer "
                      "--resolution carries more.")
     errors, budgets = bake.errors, bake.budgets
-    asked = budgets["direction_rms"] is not None
+    asked = budgets["direction_rms"] is not None and errors["direction_rms"] is not None
     if asked and (errors["direction_rms"] > budgets["direction_rms"]
                   or errors["direction_worst"] > budgets["direction_worst"]):
         notes.append(f"Directions are predicted from each other to {_percent(errors['direction_rms'])} rms and "
@@ -91,12 +93,14 @@ def _head(bake: Bake) -> str:
     missed, notes = _missed(bake), _notes(bake)
     if missed:
         badge, look = f"Not within what was asked: {', '.join(missed).lower()}", "differs"
+    elif e["direction_rms"] is None:
+        badge, look = "One flow is all directions, by symmetry; the rest is within what was asked", "same"
     elif bake.budgets["direction_rms"] is None:
         badge, look = "Nothing was asked of its directions; the rest is within", "same"
     else:
         badge, look = f"Within all that {o['quality']} quality asks", "same"
     if notes and not missed:
-        badge += f"; {'a warning' if len(notes) == 1 else 'warnings'} below"
+        badge, look = badge + f"; {'a warning' if len(notes) == 1 else 'warnings'} below", "heeded"
     values = [("Quality", escape(o["quality"])), ("Flows", number(len(bake.flows))),
               ("Time of this run", _time(bake.json["seconds"])), ("File", f"{number(m['bytes'] / 1e3)} kB"),
               ("Largest mean force", quantity(bake.largest_force, "N")), ("Reynolds number", number(m["reynolds"]))]
@@ -104,6 +108,9 @@ def _head(bake: Bake) -> str:
             f"is off by about <b>{_percent(e['direction_rms'])}</b> of the largest (at worst "
             f"{_percent(e['direction_worst'])}); the mean drag of the flows themselves is known to "
             f"<b>{_percent(e['uncertainty'])}</b> or better, not counting the grid.")
+    if e["direction_rms"] is None:
+        said = (f"The body's symmetry makes every direction of the one that was solved, at {quantity(o['speed'], 'm/s')}. "
+                f"Its mean drag is known to <b>{_percent(e['uncertainty'])}</b>, not counting the grid.")
     return f"""<header>
 <p class="over">Force of water on rigid objects</p>
 <h1>{escape(Path(bake.json['mesh']).name)}: the map</h1>
@@ -127,13 +134,14 @@ def _verdicts(bake: Bake) -> str:
              ("point of attack alone", e["arm"])]
     rest = [("Regions, by parts", ", ".join(f"{name} {_percent(value)}" for name, value in parts)),
             ("Added mass, estimated", _percent(e["added_mass"]) + (
-                " of its largest entries, from solving on a coarser mesh too" if e["added_mass"] is not None else
+                " of the diagonal about the centroid (docs/added-mass.md)" if e["added_mass"] is not None else
                 " (left out)"))]
     worst = max(bake.base, key=lambda flow: flow["uncertainty"])
     rest.append(("Least certain flow", f"{_name(bake, worst)}: {_uncertainty(worst)}"))
-    far = max(bake.base, key=lambda flow: flow["left_out"])
-    rest.append(("Worst predicted flow", f"{_name(bake, far)}: off by {_percent(far['left_out'])}, "
-                 f"{quantity(far['left_out'] * bake.largest_force, 'N')}"))
+    far = max(bake.base, key=lambda flow: flow["left_out"] or 0.0)
+    if far["left_out"] is not None:
+        rest.append(("Worst predicted flow", f"{_name(bake, far)}: off by {_percent(far['left_out'])}, "
+                     f"{quantity(far['left_out'] * bake.largest_force, 'N')}"))
     return (f"<section><h2>Stated errors</h2>{many(('error', 'is', 'asked for', ''), rows)}"
             "<p>They are apart: those of directions and rounding are of the map against its flows, that of the regions "
             "of a tick against one with ever smaller regions, the last of the flows against the water.</p>"
@@ -165,7 +173,7 @@ def _body(bake: Bake) -> str:
     sources = bake.surface("sources")[:, :3]
     rows = [("Extent along x, y, z", vector(extent, "m")), ("Surface, volume", f"{quantity(body['area'], 'm²')}, "
             f"{quantity(body['volume'], 'm³')}"), ("Sample triangles", number(body["triangles"])),
-            ("Symmetry", f"{body['symmetry']}" + ("" if bake.options["symmetry"] else " (not used: --no-symmetry)")),
+            ("Symmetry", body["symmetry"] if bake.options["symmetry"] else "not looked for (--no-symmetry)"),
             ("Patches that flows are recorded on", number(body["patches"]))]
     listed = ""
     if len(sources) <= 24:
@@ -179,15 +187,18 @@ def _directions(bake: Bake) -> str:
     images = sum(flow["images"]["shape"][0] for flow in bake.base)
     means = bake.array(bake.json["means"])
     most, least = int(bake.drag.argmax()), int(bake.drag.argmin())
-    errors = np.array([flow["left_out"] for flow in bake.base])
+    errors = np.array([flow["left_out"] for flow in bake.base if flow["left_out"] is not None])
     text = (f"Where the stream goes to, in the mesh's frame; equal areas of the sphere are equal areas here. "
             f"{plural(len(bake.base), 'direction')} {'was' if len(bake.base) == 1 else 'were'} solved at "
-            f"{quantity(bake.options['speed'], 'm/s')}; with {'their' if len(bake.base) > 1 else 'its'} images under "
-            f"the body's symmetry the force is known in {number(images)}, and the map has it in "
-            f"{number(bake.map['directions'])}. The drag goes from {quantity(bake.drag[least], 'N')} towards "
-            f"{vector(means[least, :3])} to {quantity(bake.drag[most], 'N')} towards {vector(means[most, :3])}. Left "
-            f"out and predicted from the others, {number(int((errors > 0.1).sum()))} of {plural(len(errors), 'flow')} "
-            f"{'is' if (errors > 0.1).sum() == 1 else 'are'} off by more than 10 % of the largest force.")
+            f"{quantity(bake.options['speed'], 'm/s')}")
+    if images > len(bake.base):
+        text += f"; the body's symmetry makes the force known in {number(images)}"
+    text += (f". The map has it in {number(bake.map['directions'])}. The drag goes from {quantity(bake.drag[least], 'N')} "
+             f"towards {vector(means[least, :3])} to {quantity(bake.drag[most], 'N')} towards {vector(means[most, :3])}.")
+    if len(errors):
+        off = int((errors > 0.1).sum())
+        text += (f" Left out and predicted from the others, {number(off)} of {plural(len(errors), 'flow')} "
+                 f"{'is' if off == 1 else 'are'} off by more than 10 % of the largest force.")
     drawn = figure(_bake_figures.directions(bake), "Drag and errors over the sphere of directions", text)
     return f"<section><h2>Where the stream was solved</h2>{drawn}</section>"
 
@@ -250,11 +261,12 @@ def _flows(bake: Bake) -> str:
 
 
 def shown(bake: Bake) -> list[int]:
-    """The flows that are shown one by one: all, or those that most is to be learned from."""
+    """The flows that are shown one by one: all, or the spins, which are few, and those that are known worst."""
     if len(bake.flows) <= MOST_FLOWS:
         return list(range(len(bake.flows)))
     worst = sorted(range(len(bake.flows)),
-                   key=lambda at: -max(bake.flows[at]["left_out"] or 0.0, bake.flows[at]["uncertainty"]))
+                   key=lambda at: (bake.flows[at]["kind"] != "spin",
+                                   -max(bake.flows[at]["left_out"] or 0.0, bake.flows[at]["uncertainty"])))
     return sorted(worst[:MOST_FLOWS])
 
 
@@ -264,8 +276,9 @@ def _strips(bake: Bake) -> str:
             "latter with its Strouhal number (St) if one stands out; the mean so far in the band of its standard "
             "error; the speed of the water, a mean over the last third of the run.")
     if len(which) < len(bake.flows):
+        spins = ", and the spins" if any(flow["kind"] == "spin" for flow in bake.flows) else ""
         text += (f" {number(len(bake.flows) - len(which))} of {number(len(bake.flows))} flows are left out: these are "
-                 f"the {number(len(which))} with the largest error or uncertainty.")
+                 f"the {number(len(which))} with the largest error or uncertainty{spins}.")
     drawn = [figure(_bake_figures.speed_key(), "Colours of the speed", "")]
     for at in which:
         flow = bake.flows[at]

@@ -17,6 +17,7 @@ p { margin: .4rem 0 .8rem; max-width: 46rem; }
   font-weight: 600; }
 .same { background: #e4f3ec; color: #0c5d3f; }
 .differs { background: #fbe8e2; color: #932b0c; }
+.heeded { background: #fff6e0; color: #7a5200; }
 .note { background: #fff6e0; border-left: 3px solid #d99a1c; padding: .5rem .9rem; }
 .facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(8.6rem, 1fr)); gap: 1px;
   margin: 1.5rem 0 1.2rem; border: 1px solid var(--rule); border-radius: .5rem; overflow: hidden; }
