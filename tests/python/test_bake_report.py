@@ -38,7 +38,7 @@ def flow_of(data, number, direction, **changes):
     swing = 0.3 * numpy.sin(2 * math.pi * STROUHAL * SPEED / LENGTH * time)
     force = UNIT * (numpy.outer(numpy.full(SAMPLES, 1.1 + number / 10), direction) + numpy.outer(swing, across))
     speed = numpy.ones((21, 41))
-    speed[9:12, 10:13] = numpy.nan
+    speed[9:12, 10:13] = speed[:, 40] = numpy.nan
     return {"name": f"direction {number}", "kind": "stream", "direction": list(direction), "speed": SPEED,
             "fastest": SPEED, "left_out": 0.02 * (number + 1), "lift_axis": list(across), "cd": 1.1 + number / 10,
             "strouhal": STROUHAL, "torque_coefficient": None, "uncertainty": 0.031,
@@ -163,6 +163,13 @@ def test_the_picture_of_the_sphere_is_mollweides():
     x, y = _bake_figures.mollweide(numpy.array([(1, 0, 0), (0, 1, 0), (0, 0, 1)]))
     assert x == pytest.approx([0, math.sqrt(2), 0], abs=1e-4) and y == pytest.approx([0, 0, math.sqrt(2)], abs=1e-4)
     assert numpy.isnan(_bake_figures.unmollweide(numpy.array([2.8]), numpy.array([1.0]))).any()
+
+
+def test_the_slice_ends_where_the_grid_does(tmp_path):
+    write(tmp_path)
+    bake = _bake.read(tmp_path)
+    slice_ = bake.flow(bake.flows[0]).slices[0]
+    assert slice_.speed.shape == (21, 40) and slice_.body == pytest.approx([-0.5, -0.4, -0.05, 0.05])
 
 
 def test_neighbours_are_in_step_or_not(tmp_path):

@@ -108,6 +108,10 @@ class Bake:
         if "slice" in one:
             speed, low, spacing = self.array(one["slice"]), one["slice"]["low"], one["slice"]["spacing"]
             normal = one["slice"]["normal"]
+            # The last ones of a frame that turns may lie beyond its grid: there is no body there.
+            water = np.isfinite(speed)
+            speed = speed[:max(np.flatnonzero(water.any(1)), default=0) + 1,
+                          :max(np.flatnonzero(water.any(0)), default=0) + 1]
             slices.append(Slice(normal, low[normal], low[0] + spacing * np.arange(speed.shape[1]),
                                 low[3 - normal] + spacing * np.arange(speed.shape[0]), speed,
                                 np.full(speed.shape, np.nan)))

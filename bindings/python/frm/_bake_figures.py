@@ -11,7 +11,7 @@ from matplotlib.patches import Ellipse
 
 from ._bake import Bake, Lattice, running
 from ._drawing import AXIS_COLOURS, INK, QUIET, RULE, canvas, curve, mark, png, styled
-from ._flow_figures import COLOURS, SPEED, amplitudes, draw_slice, shown_part
+from ._flow_figures import COLOURS, SPEED, UPSTREAM, amplitudes, draw_slice, shown_part
 
 # Light to dark, so that a print in grey still tells which is more.
 AMOUNT = LinearSegmentedColormap.from_list("frm_amount", ["#eef4f7", "#a9d0e2", "#4f9cc4", "#0b5a8a", "#0b2a3f"])
@@ -276,6 +276,8 @@ def flow(bake: Bake, one: dict) -> str:
                   ylim=(low - pad, high + pad))
     if series.slices:
         part = shown_part(series, series.slices[0])
+        if series.spin_alone:  # there is no wake to one side
+            part[1] = min(part[1], series.slices[0].body[1] + UPSTREAM * one["reference_length"])
         draw_slice(panels[3], series.slices[0], series.slices[0].speed, SPEED, Normalize(0, _FASTEST))
         panels[3].set(xlim=part[:2], ylim=part[2:], title="Speed", anchor="W")
         panels[3].set_xticks([])
@@ -299,7 +301,7 @@ def speed_key() -> str:
     axes.grid(False)
     axes.set_yticks([])
     axes.tick_params(labelsize=7.5, length=2)
-    figure.text(0.29, 0.62, "speed, shares of the stream's", ha="right", va="center", fontsize=8)
+    figure.text(0.29, 0.62, "speed, shares of the stream's (of a spin: the fastest point's)", ha="right", va="center", fontsize=8)
     for spine in axes.spines.values():
         spine.set_color(RULE)
     return png(figure, 120)
