@@ -17,6 +17,9 @@ namespace frm::bake {
 
 enum class Quality { draft, standard, high };
 
+/// Of the error of rounding the tables, share of the largest force.
+constexpr double kRoundingBudget = 5e-3;
+
 struct BakeOptions {
     std::string mesh;  ///< path of a .glb or .gltf
     double scale = 1;  ///< what the mesh's coordinates are multiplied by to be metres
@@ -69,10 +72,15 @@ struct BakeReport {
         double speed = 0;             ///< m/s; of a spin: rad/s
         double drag_coefficient = 0;  ///< on the projected area; 0 for a spin
         double uncertainty = 0;       ///< standard error of the mean drag (a spin's torque), share
+        // Of a stream's mean force, among those of its speed:
+        std::vector<Vec3d> images;  ///< where the body's symmetry makes it known, its own direction first
+        double left_out =
+            -1;  ///< its error as all others predict it, share of the largest force; negative: there are none
     };
     std::vector<Flow> flows;           ///< one a task
     DirectionErrors direction_errors;  ///< of the base speed's means, each flow predicted from the others
     double uncertainty = 0;            ///< of the worst flow at the base speed
+    double added_mass_error = 0;       ///< AddedMass::error
 };
 
 /// Throws BakeError or MeshError, naming what cannot be.

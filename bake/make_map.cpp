@@ -13,13 +13,12 @@
 namespace frm::bake {
 namespace {
 
-constexpr double quantisation_budget = 5e-3;  ///< of the peak force
-
 /// The streams of one speed and what they found.
 struct Streams {
     std::vector<const TaskResult*> results;
     std::vector<FlowMeans> means;
     std::vector<Vec3d> directions;
+    std::vector<std::size_t> tasks;
 };
 
 Streams streams_at(const BakePlan& plan, const std::vector<TaskResult>& results, double speed) {
@@ -30,6 +29,7 @@ Streams streams_at(const BakePlan& plan, const std::vector<TaskResult>& results,
         out.results.push_back(&results[k]);
         out.means.push_back(means_of(results[k]));
         out.directions.push_back(task.flow.direction);
+        out.tasks.push_back(k);
     }
     return out;
 }
@@ -71,6 +71,15 @@ BakeReport::Flow describe(const Task& task, const TaskResult& result) {
     const double unit = 0.5 * flow.density * flow.speed * flow.speed * result.plan.projected_area;
     out.drag_coefficient = dot(means_of(result).force, flow.direction) / unit;
     return out;
+}
+
+/// Where the streams of one speed are known, and how well from each other.
+void describe(BakeReport& report, const std::vector<std::size_t>& tasks, const KnownForces& known) {
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+        BakeReport::Flow& flow = report.flows[tasks[i]];
+        for (const Image& image : known.images_of(i)) flow.images.push_back(image.direction);
+        if (tasks.size() > 1) flow.left_out = known.error_of(i);
+    }
 }
 
 // Wall time, thread count and machine are left out: the same mesh and options give the same file.
@@ -138,6 +147,7 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
         const RegionForces forces(carrier, plan.symmetry, streams.means, streams.directions, plan.reference_length,
                                   plan.spacing);
         add_means(tables, plan, forces);
+        describe(report, streams.tasks, forces.known());
         if (speed != options.speed) continue;
         report.direction_errors = forces.known().errors();
         tables.fluctuation = fluctuations(forces, streams.results, plan.regions.count, plan.fluctuation_directions,
@@ -155,10 +165,12 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
     facts.direction_error_worst = static_cast<float>(report.direction_errors.worst);
     facts.uncertainty = static_cast<float>(report.uncertainty);
     if (options.added_mass) {
-        map->added_mass = added_mass(plan.surface, {options.density}).matrix;
+        const AddedMass added = added_mass(plan.surface, {options.density});
+        map->added_mass = added.matrix;
+        report.added_mass_error = added.error;
         map->has_added_mass = true;
     }
-    fill_tables(*map, tables, quantisation_budget);
+    fill_tables(*map, tables, kRoundingBudget);
     if (plan.spin_rate > 0) {
         map->complete();  // the local streams are looked up in it
         fill_spin(*map, plan, results, carrier);

@@ -13,6 +13,7 @@
 #include "cli/bake_jobs.h"
 #include "cli/bake_options.h"
 #include "cli/bake_output.h"
+#include "cli/bake_report.h"
 #include "cli/file.h"
 #include "cli/progress.h"
 
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct Options {
     BakeArguments arguments;
-    std::string out, work, raw;
+    std::string out, work, raw, report;
     bool named = false, force = false, keep = false, json = false;
 };
 
@@ -71,11 +72,14 @@ double to_do(const bake::Store& store, const bake::BakePlan& plan) {
 
 void run(Options& o) {
     bake::BakeOptions& options = o.arguments.bake;
-    require_distinct({o.out, o.raw}, {options.mesh});
+    std::vector<std::string> outputs = BakePage::files(o.report);
+    outputs.insert(outputs.end(), {o.out, o.raw});
+    require_distinct(outputs, {options.mesh});
     require_map_place(o.out, o.named, o.force);
     if (!o.raw.empty()) require_writable(o.raw);
     settle_unit(o.arguments);
     bake::BakePlan plan = make_plan(o.arguments, o.out);
+    const std::unique_ptr<BakePage> page = o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report);
     print_plan(plan);
 
     const std::string root = o.work.empty() ? o.out + ".work" : "";
@@ -98,6 +102,7 @@ void run(Options& o) {
         BakeRun done;
         done.json = o.json;
         done.raw = o.raw;
+        done.page = page.get();
         done.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         done.updates = cost_of(plan).updates - before;
         finish_map(plan, results, o.out, done, [&] { bar.hide(); });
@@ -112,6 +117,7 @@ void run(Options& o) {
         leave(store, plan, root, error.what());
     }
     clear(store, root, o.keep);
+    if (page) end_report(*page, o.report, o.json);
 }
 
 }  // namespace
@@ -139,6 +145,7 @@ void add_bake(CLI::App& app) {
     command->add_option("--raw", o.raw, "write the tables too as they were before rounding (frm verify --against)")
         ->check(not_empty())
         ->type_name("FILE");
+    add_report_option(*command, o.report);
     command->add_flag("--force", o.force, "replace a file that is not a map, or was not named by -o");
     command->add_option("--work", o.work, "folder for unfinished work (default: OUT.work)")
         ->check(not_empty())

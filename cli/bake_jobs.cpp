@@ -16,6 +16,7 @@
 #include "bake/tasks/store.h"
 #include "cli/bake_options.h"
 #include "cli/bake_output.h"
+#include "cli/bake_report.h"
 #include "cli/file.h"
 #include "cli/launcher.h"
 #include "cli/progress.h"
@@ -164,12 +165,15 @@ void solve(SolveOptions& o) {
 // ---- merge -----------------------------------------------------------------------------------------------------
 
 struct MergeOptions {
-    std::string folder, out;
+    std::string folder, out, report;
     bool force = false, json = false;
 };
 
 void merge(MergeOptions& o) {
     const bool named = !o.out.empty();
+    std::vector<std::string> outputs = BakePage::files(o.report);
+    outputs.push_back(o.out);
+    require_distinct(outputs, {});
     if (named) require_map_place(o.out, named, o.force);
     Folder folder = open_folder(o.folder);
     if (!named) {
@@ -190,10 +194,13 @@ void merge(MergeOptions& o) {
                          ranges(found.missing).c_str());
         throw Unsuccessful{found.extended ? status_extended : status_missing};
     }
+    const std::unique_ptr<BakePage> page = o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report);
     BakeRun done;
     done.json = o.json;
+    done.page = page.get();
     for (const bake::TaskResult& result : found.results) done.seconds += result.seconds;
     finish_map(folder.plan, found.results, o.out, done);
+    if (page) end_report(*page, o.report, o.json);
 }
 
 // ---- The commands ------------------------------------------------------------------------------------------------
@@ -265,6 +272,7 @@ void add_merge(CLI::App& bake) {
                      "the map to write (default: the mesh's name, .frm, in the current folder, if\nthere is none yet)")
         ->check(not_empty())
         ->type_name("FILE");
+    add_report_option(*command, o.report);
     command->add_flag("--force", o.force, "replace a file that is not a map, or was not named by -o");
     command->add_flag("--json", o.json, "JSON on standard output");
     command->callback([options] { merge(*options); });

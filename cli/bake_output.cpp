@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/map/raw.h"
+#include "cli/bake_report.h"
 #include "cli/command.h"
 #include "cli/file.h"
 #include "core/map/codec.h"
@@ -23,6 +24,50 @@ bool is_map(const std::string& path) {
     char head[sizeof format::magic] = {};
     file.read(head, sizeof head);
     return file.gcount() == 0 || (file.gcount() == sizeof head && std::memcmp(head, format::magic, sizeof head) == 0);
+}
+
+/// The notes and what is on standard output.
+void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& report, const std::string& out,
+         std::size_t bytes, const BakeRun& run) {
+    const double worst = report.uncertainty;
+    const bake::DirectionErrors& between = report.direction_errors;
+    const bool missed = plan.budget.rms > 0 && (between.rms > plan.budget.rms || between.worst > plan.budget.worst);
+    if (missed)
+        std::fprintf(stderr,
+                     "note: directions are predicted from each other to %.1f %% rms and %.1f %% at worst, not the %.0f "
+                     "and %.0f %% of this quality: take a higher --quality, --resolution or --directions\n",
+                     100 * between.rms, 100 * between.worst, 100 * plan.budget.rms, 100 * plan.budget.worst);
+    if (worst > kNotedUncertainty)
+        std::fprintf(
+            stderr,
+            "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",
+            100 * worst);
+    const double mlups = run.seconds > 0 ? run.updates / run.seconds / 1e6 : 0;
+    if (run.json) {
+        nlohmann::ordered_json j{{"file", out},
+                                 {"file_bytes", bytes},
+                                 {"directions", map.directions.count()},
+                                 {"sources", map.source_count()},
+                                 {"samples", map.samples},
+                                 {"flows", plan.tasks.size()},
+                                 {"reynolds", map.facts.reynolds},
+                                 {"reynolds_solved", map.facts.reynolds_solved},
+                                 {"uncertainty", worst},
+                                 {"direction_error_rms", between.rms},
+                                 {"direction_error_worst", between.worst},
+                                 {"quantisation_error", map.facts.quantisation_error},
+                                 {"mlups", mlups},
+                                 {"seconds", run.seconds}};
+        std::printf("%s\n", j.dump(2).c_str());
+        return;
+    }
+    char speed[64] = "";
+    if (mlups > 0) std::snprintf(speed, sizeof speed, " (%.0f million cell updates a second)", mlups);
+    std::printf("%s: %.1f kB, %zu flows, %u sources, in %.1f s%s\n", out.c_str(), static_cast<double>(bytes) / 1e3,
+                plan.tasks.size(), map.source_count(), run.seconds, speed);
+    std::printf("shares of the largest force: between directions %.1f %% rms, %.1f %% at worst; rounded to %.2g %%\n",
+                100 * between.rms, 100 * between.worst, 100 * static_cast<double>(map.facts.quantisation_error));
+    std::printf("mean drag is uncertain by %.1f %% (statistics of the worst direction)\n", 100 * worst);
 }
 
 }  // namespace
@@ -51,45 +96,9 @@ void finish_map(const bake::BakePlan& plan, const std::vector<bake::TaskResult>&
     }
     before_words();
 
-    const double worst = report.uncertainty;
-    const bake::DirectionErrors& between = report.direction_errors;
-    const bool missed = plan.budget.rms > 0 && (between.rms > plan.budget.rms || between.worst > plan.budget.worst);
-    if (missed)
-        std::fprintf(stderr,
-                     "note: directions are predicted from each other to %.1f %% rms and %.1f %% at worst, not the %.0f "
-                     "and %.0f %% of this quality: take a higher --quality, --resolution or --directions\n",
-                     100 * between.rms, 100 * between.worst, 100 * plan.budget.rms, 100 * plan.budget.worst);
-    if (worst > 0.1)
-        std::fprintf(
-            stderr,
-            "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",
-            100 * worst);
-    const double mlups = run.seconds > 0 ? run.updates / run.seconds / 1e6 : 0;
-    if (run.json) {
-        nlohmann::ordered_json j{{"file", out},
-                                 {"file_bytes", file.size()},
-                                 {"directions", map->directions.count()},
-                                 {"sources", map->source_count()},
-                                 {"samples", map->samples},
-                                 {"flows", plan.tasks.size()},
-                                 {"reynolds", map->facts.reynolds},
-                                 {"reynolds_solved", map->facts.reynolds_solved},
-                                 {"uncertainty", worst},
-                                 {"direction_error_rms", between.rms},
-                                 {"direction_error_worst", between.worst},
-                                 {"quantisation_error", map->facts.quantisation_error},
-                                 {"mlups", mlups},
-                                 {"seconds", run.seconds}};
-        std::printf("%s\n", j.dump(2).c_str());
-        return;
-    }
-    char speed[64] = "";
-    if (mlups > 0) std::snprintf(speed, sizeof speed, " (%.0f million cell updates a second)", mlups);
-    std::printf("%s: %.1f kB, %zu flows, %u sources, in %.1f s%s\n", out.c_str(),
-                static_cast<double>(file.size()) / 1e3, plan.tasks.size(), map->source_count(), run.seconds, speed);
-    std::printf("shares of the largest force: between directions %.1f %% rms, %.1f %% at worst; rounded to %.2g %%\n",
-                100 * between.rms, 100 * between.worst, 100 * static_cast<double>(map->facts.quantisation_error));
-    std::printf("mean drag is uncertain by %.1f %% (statistics of the worst direction)\n", 100 * worst);
+    say(plan, *map, report, out, file.size(), run);
+    std::fflush(stdout);
+    if (run.page) run.page->write({plan, results, *map, tables, report, out, file.size(), run.seconds});
 }
 
 }  // namespace frm::cli

@@ -9,6 +9,8 @@
 
 namespace frm::cli {
 
+class BakePage;
+
 /// Throws Failure now if the map could not be written to `out` after hours. A file that is there is replaced if it is a
 /// map and was `named` by the user, or if `force` says so.
 void require_map_place(const std::string& out, bool named, bool force);
@@ -16,14 +18,18 @@ void require_map_place(const std::string& out, bool named, bool force);
 /// NAME.frm in the current folder, for a mesh NAME.glb anywhere.
 std::string default_map(const std::string& mesh);
 
+/// A mean drag that is less sure than this is told.
+constexpr double kNotedUncertainty = 0.1;
+
 struct BakeRun {
-    double seconds = 0;  ///< wall time of this run
-    double updates = 0;  ///< cell updates done in this run
-    std::string raw;     ///< where the unrounded tables go; empty: nowhere
+    double seconds = 0;        ///< wall time of this run
+    double updates = 0;        ///< cell updates done in this run
+    std::string raw;           ///< where the unrounded tables go; empty: nowhere
+    BakePage* page = nullptr;  ///< gets what the report shows
     bool json = false;
 };
 
-/// Makes the map, writes it, and says so on standard output; `before_words` is called in between.
+/// Makes the map, writes it, and says so on standard output; `before_words` is called in between. Last the report.
 void finish_map(
     const bake::BakePlan& plan, const std::vector<bake::TaskResult>& results, const std::string& out,
     const BakeRun& run, const std::function<void()>& before_words = [] {});

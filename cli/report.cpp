@@ -64,18 +64,30 @@ int run_python(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-void require_report_tools() {
+std::string missing_report_tools() {
     package_path();
     library_path();
     if (run_python({"-c", "import sys\ntry:\n import matplotlib\nexcept ImportError:\n sys.exit(3)"}) != 0)
-        throw Failure(
-            "--report: " FRM_PYTHON
-            " with matplotlib is needed: apt install python3-matplotlib. Without --report the run needs neither");
+        return FRM_PYTHON " with matplotlib is needed: apt install python3-matplotlib";
+    return "";
+}
+
+void require_report_tools() {
+    const std::string missing = missing_report_tools();
+    if (!missing.empty()) throw Failure("--report: " + missing + ". Without --report the run needs neither");
+}
+
+std::string report_command(const std::string& module, const std::string& folder) {
+    return "PYTHONPATH='" + package_path() + "' " FRM_PYTHON " -m " + module + " '" + folder + "'";
 }
 
 void write_report(const std::string& recording, const std::string& run_json, const std::string& page) {
     if (run_python({"-m", "frm.report", recording, "-o", page, "--run", run_json}) != 0)
         throw Failure("--report: the page was not written");
+}
+
+void write_bake_page(const std::string& folder) {
+    if (run_python({"-m", "frm.bake_report", folder}) != 0) throw Failure("it could not be drawn");
 }
 
 void write_flow_page(const std::string& folder) {

@@ -84,6 +84,11 @@ DirectionErrors KnownForces::errors() const {
     return out;
 }
 
+double KnownForces::error_of(std::size_t k) const {
+    const auto first = error_.begin() + static_cast<std::ptrdiff_t>(first_[k]);
+    return *std::max_element(first, first + static_cast<std::ptrdiff_t>(images_[k].size()));
+}
+
 std::vector<Vec3d> KnownForces::next(std::size_t count) const {
     const DirectionSet lattice(candidates);
     const double least_apart = 0.5 * spacing_of(candidates);

@@ -33,6 +33,8 @@ public:
 
     /// Every solved direction predicted from the others.
     DirectionErrors errors() const;
+    /// Solved direction k predicted from the others: the worst of its images, share of the largest force.
+    double error_of(std::size_t k) const;
     /// `count` directions to solve next: where the forces around are predicted badly and the nearest is far.
     std::vector<Vec3d> next(std::size_t count) const;
 

@@ -1,6 +1,7 @@
 // The whole bake, small.
 #include "bake/bake.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "bake/map/formula.h"
@@ -49,11 +50,19 @@ TEST_CASE("a bake is the same bytes again, with any number of threads, and pushe
             first = file;
             // Of a box, three of the six directions along its axes.
             REQUIRE(report.flows.size() == 3);
+            double worst = 0;
             for (const BakeReport::Flow& flow : report.flows) {
+                // Each is its own mirror image.
+                CHECK(flow.images.size() == 2);
+                CHECK(flow.left_out >= 0);
+                worst = std::max(worst, flow.left_out);
                 // A box face-on: 1 to 1.3 in the literature; four cells across are coarse.
                 CHECK(flow.drag_coefficient > 0.8);
                 CHECK(flow.drag_coefficient < 1.8);
             }
+            CHECK(worst == report.direction_errors.worst);
+            CHECK(report.added_mass_error > 0);
+            CHECK(report.added_mass_error < 0.1);
             for (std::uint32_t d = 0; d < map->directions.count(); ++d) {
                 const Vec3d e = map->directions.direction(d);
                 const Vec3d force = whole_mean(*map, d);

@@ -89,7 +89,7 @@ def spectrum(flow: Flow) -> str:
     return svg(figure)
 
 
-def _window(flow: Flow, slice_: Slice):
+def shown_part(flow: Flow, slice_: Slice):
     """(x low, x high, across low, across high) of what the slices show, m."""
     length, body = flow.report["reference_length"], slice_.body
     wanted = body + length * np.array([-UPSTREAM, DOWNSTREAM, -BESIDE, BESIDE])
@@ -99,7 +99,7 @@ def _window(flow: Flow, slice_: Slice):
                      max(wanted[2], there[2]), min(wanted[3], there[3])])
 
 
-def _image(axes, slice_: Slice, values, colours, norm):
+def draw_slice(axes, slice_: Slice, values, colours, norm):
     half = (slice_.x[1] - slice_.x[0]) / 2 if len(slice_.x) > 1 else 0.5
     axes.set_facecolor(BODY)
     axes.grid(False)
@@ -127,7 +127,7 @@ def _scales(flow: Flow):
 @styled
 def slices(flow: Flow, slice_: Slice) -> str:
     """Speed and pressure about the body, one above the other."""
-    window = _window(flow, slice_)
+    window = shown_part(flow, slice_)
     width = 7.6
     height = min((width - 1.5) * (window[3] - window[2]) / (window[1] - window[0]), 5.0)
     figure = canvas(width, 2 * (height + 0.45))
@@ -137,7 +137,7 @@ def slices(flow: Flow, slice_: Slice) -> str:
             pair, (slice_.speed, slice_.pressure), (SPEED, PRESSURE), norms,
             (f"Speed, shares of {'the fastest point' if flow.spin_alone else 'the stream'}'s",
              "Pressure coefficient")):
-        image = _image(axes, slice_, values, colours, norm)
+        image = draw_slice(axes, slice_, values, colours, norm)
         axes.set(xlim=window[:2], ylim=window[2:], title=title, ylabel=f"{'xyz'[slice_.other]}, m")
         figure.colorbar(image, ax=axes, shrink=0.9, pad=0.015, extend="max" if values is slice_.speed else "both")
     pair[1].set_xlabel("x, along the stream, m")
@@ -164,10 +164,10 @@ def grid(flow: Flow, slice_: Slice) -> str:
     shades = [AXIS_COLOURS["x"], AXIS_COLOURS["y"], AXIS_COLOURS["z"], "#CC79A7", "#E69F00", "#56B4E9"]
     left, right = figure.subplots(1, 2)
     for axes, view, title in ((left, whole, "All of the grid"), (right, close, "About the body")):
-        _image(axes, slice_, slice_.speed, SPEED, _scales(flow)[0]).set_alpha(0.55)
+        draw_slice(axes, slice_, slice_.speed, SPEED, _scales(flow)[0]).set_alpha(0.55)
         axes.set_facecolor("white")
         solid = np.where(np.isnan(slice_.speed), 1.0, np.nan)
-        _image(axes, slice_, solid, LinearSegmentedColormap.from_list("frm_body", [BODY, BODY]), None)
+        draw_slice(axes, slice_, solid, LinearSegmentedColormap.from_list("frm_body", [BODY, BODY]), None)
         axes.set_facecolor("white")
         for block, corner, far in zip(blocks, low, high):
             level = round(np.log2(block["cell"] / finest))

@@ -17,6 +17,7 @@ p { margin: .4rem 0 .8rem; max-width: 46rem; }
   font-weight: 600; }
 .same { background: #e4f3ec; color: #0c5d3f; }
 .differs { background: #fbe8e2; color: #932b0c; }
+.heeded { background: #fff6e0; color: #7a5200; }
 .note { background: #fff6e0; border-left: 3px solid #d99a1c; padding: .5rem .9rem; }
 .facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(8.6rem, 1fr)); gap: 1px;
   margin: 1.5rem 0 1.2rem; border: 1px solid var(--rule); border-radius: .5rem; overflow: hidden; }
@@ -42,6 +43,9 @@ td { font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 table.many { width: auto; font-size: .84rem; }
 .many th, .many td { width: auto; padding-right: 1.2rem; white-space: nowrap; }
 code { font: .88em ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; overflow-wrap: anywhere; }
+.flows .many th, .flows .many td { padding-right: .8rem; font-size: .8rem; }
+.strips figure { margin: .3rem 0 1rem; }
+.strips figcaption { font-size: .84rem; max-width: none; margin-top: 0; }
 footer { margin-top: 3rem; padding-top: .8rem; border-top: 1px solid var(--rule); color: var(--quiet);
   font-size: .85rem; }
 @media (max-width: 40rem) { main { padding-top: 1.3rem; }

@@ -1,0 +1,89 @@
+#include "cli/report_folder.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "cli/command.h"
+
+namespace frm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
+    throw Failure("--report: " + path.string() + ": " + error.message());
+}
+
+}  // namespace
+
+/// An empty folder, or a report of this kind and nothing else.
+bool ReportFolder::may_be_replaced() const {
+    bool empty = true;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+        empty = false;
+        if (std::count(kind_.files.begin(), kind_.files.end(), entry.path().filename().string()) == 0) return false;
+    }
+    if (empty) return true;
+    std::ifstream file(folder_ / kind_.files.front(), std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    return text.find(kind_.format) != std::string::npos;
+}
+
+ReportFolder::ReportFolder(const std::string& folder, ReportKind kind) : kind_(std::move(kind)) {
+    std::error_code error;
+    folder_ = fs::weakly_canonical(fs::absolute(folder), error);
+    if (error) fail(folder, error);
+    const bool there = fs::exists(folder_, error);
+    if (there && !fs::is_directory(folder_, error)) throw Failure("--report: " + folder + ": is not a folder");
+    try {
+        if (there && !may_be_replaced())
+            throw Failure("--report: " + folder + ": holds other files; name a new or an empty folder");
+    } catch (const fs::filesystem_error& e) {
+        fail(folder, e.code());
+    }
+    // Inside a folder that is there, because what is beside it may be another file system or somebody else's; beside
+    // the topmost folder that is not there yet, so that a run that fails leaves none.
+    fs::path where = folder_;
+    while (!fs::exists(where, error)) where = where.parent_path();
+    temporary_ = where / (".frm_report.tmp" + std::to_string(getpid()));
+    if (!fs::create_directory(temporary_, error)) {
+        temporary_.clear();
+        fail(folder, error ? error : std::make_error_code(std::errc::file_exists));
+    }
+}
+
+ReportFolder::~ReportFolder() {
+    std::error_code ignored;
+    if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+}
+
+void ReportFolder::publish() {
+    std::error_code error;
+    if (fs::exists(folder_, error)) {
+        // The JSON, which says what the others hold, last.
+        for (auto name = kind_.files.rbegin(); name != kind_.files.rend(); ++name) {
+            if (fs::exists(temporary_ / *name, error))
+                fs::rename(temporary_ / *name, folder_ / *name, error);
+            else
+                fs::remove(folder_ / *name, error);
+            if (error) fail(folder_ / *name, error);
+        }
+        return;
+    }
+    fs::create_directories(folder_.parent_path(), error);
+    if (!error) fs::rename(temporary_, folder_, error);
+    if (error) fail(folder_, error);
+    temporary_.clear();
+}
+
+std::vector<std::string> ReportFolder::paths(const std::string& folder, const ReportKind& kind) {
+    std::vector<std::string> paths;
+    for (const std::string& name : kind.files) paths.push_back(folder + "/" + name);
+    return paths;
+}
+
+}  // namespace frm::cli
