@@ -31,7 +31,7 @@ public:
     std::size_t first_site(std::size_t k) const { return first_[k]; }
     const DirectionFit& fit() const { return fit_; }
 
-    /// Every solved direction predicted from the others.
+    /// Every solved direction predicted from the others; zero, which is not known, where there is one only.
     DirectionErrors errors() const;
     /// `count` directions to solve next: where the forces around are predicted badly and the nearest is far.
     std::vector<Vec3d> next(std::size_t count) const;

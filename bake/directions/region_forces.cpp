@@ -73,6 +73,7 @@ double RegionForces::rms(const Vec3d& e) const {
 }
 
 RegionForces::Nearest RegionForces::nearest(const Vec3d& e) const {
+    constexpr double same_direction = 1e-6;  // chord
     constexpr double nearer = 1e-9;  // by more than rounding: of images equally near, the first
     double best = -2;
     Nearest out;
@@ -81,6 +82,7 @@ RegionForces::Nearest RegionForces::nearest(const Vec3d& e) const {
             if (!(dot(image.direction, e) > best + nearer)) continue;
             best = dot(image.direction, e);
             out.flow = k;
+            out.solved = length(image.direction - e) < same_direction;
             out.transfer = std::find_if(transfers_.begin(), transfers_.end(), [&](const auto& t) {
                                return same(t->g(), image.by.front());
                            })->get();

@@ -1,6 +1,8 @@
 #include "bake/directions/transfer.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace frm::bake {
 namespace {
@@ -21,25 +23,63 @@ std::vector<Facet> facets_of(const Surface& surface) {
     return facets;
 }
 
-/// The facet nearest to a point, of those that face the same way: a thin blade's other side is nearer than it should be.
-std::size_t nearest(const std::vector<Facet>& facets, const Vec3d& point, const Vec3d& normal) {
-    constexpr double same_way = 0.7;  // cosine
-    std::size_t best = 0;
-    double least = HUGE_VAL;
-    for (const bool any : {false, true}) {
+/// Finds facets by place. They are in the order of a coordinate along which no face of an ordinary body is flat, so that
+/// few are as far along it as any one.
+class Places {
+public:
+    explicit Places(const std::vector<Facet>& facets) : facets_(facets) {
+        double size = 0;
         for (std::size_t t = 0; t < facets.size(); ++t) {
-            const Vec3d apart = facets[t].centre - point;
-            double square = dot(apart, apart);
-            if (dot(facets[t].normal, normal) < same_way && !any) continue;
-            if (square < least) {
-                least = square;
-                best = t;
-            }
+            order_.push_back({dot(along, facets[t].centre), t});
+            size = std::max(size, length(facets[t].centre - facets[0].centre));
         }
-        if (least < HUGE_VAL) break;
+        std::sort(order_.begin(), order_.end());
+        tie_ = 1e-12 * size * size;
     }
-    return best;
-}
+
+    /// The facet nearest to a point, of those that face the same way: a thin blade's other side is nearer than it should
+    /// be. Of facets equally near, the first: images of one another are, and rounding must not choose.
+    std::size_t nearest(const Vec3d& point, const Vec3d& normal) const {
+        for (const double same_way : {0.7, -HUGE_VAL}) {
+            Best best;
+            const double place = dot(along, point);
+            auto after = std::lower_bound(order_.begin(), order_.end(), std::pair<double, std::size_t>{place, 0});
+            auto before = after;
+            // Outwards, while what lies there may be as near.
+            for (;;) {
+                const double up = after != order_.end() ? after->first - place : HUGE_VAL;
+                const double down = before != order_.begin() ? place - (before - 1)->first : HUGE_VAL;
+                const double next = std::min(up, down);
+                if (next == HUGE_VAL || next * next > best.square + tie_) break;
+                consider(up <= down ? (after++)->second : (--before)->second, point, normal, same_way, best);
+            }
+            if (best.square < HUGE_VAL) return best.facet;
+        }
+        return 0;
+    }
+
+private:
+    static constexpr Vec3d along{0.6345, 0.5181, 0.5734};  // of length 1, nearly and not above
+
+    struct Best {
+        double square = HUGE_VAL;
+        std::size_t facet = 0;
+    };
+
+    void consider(std::size_t t, const Vec3d& point, const Vec3d& normal, double same_way, Best& best) const {
+        if (dot(facets_[t].normal, normal) < same_way) return;
+        const Vec3d apart = facets_[t].centre - point;
+        const double square = dot(apart, apart);
+        if (square < best.square - tie_ || (square <= best.square + tie_ && t < best.facet)) {
+            best.square = std::min(square, best.square);
+            best.facet = t;
+        }
+    }
+
+    const std::vector<Facet>& facets_;
+    std::vector<std::pair<double, std::size_t>> order_;
+    double tie_ = 0;
+};
 
 }  // namespace
 
@@ -47,10 +87,11 @@ Transfer::Transfer(const Surface& surface, const Regions& patches, const Regions
                    const Matrix3& g)
     : g_(g) {
     const std::vector<Facet> facets = facets_of(surface);
+    const Places places(facets);
     const Matrix3 back = transpose(g);
     std::vector<double> area(std::size_t{patches.count} * regions.count, 0.0), covered(patches.count, 0.0);
     for (std::size_t t = 0; t < facets.size(); ++t) {
-        const std::size_t from = nearest(facets, centre + back * (facets[t].centre - centre), back * facets[t].normal);
+        const std::size_t from = places.nearest(centre + back * (facets[t].centre - centre), back * facets[t].normal);
         const std::uint32_t patch = patches.region[from];
         area[std::size_t{patch} * regions.count + regions.region[t]] += facets[t].area;
         covered[patch] += facets[t].area;
@@ -59,7 +100,7 @@ Transfer::Transfer(const Surface& surface, const Regions& patches, const Regions
     for (std::size_t t = 0; t < facets.size(); ++t) {
         const std::uint32_t patch = patches.region[t];
         if (covered[patch] > 0) continue;
-        const std::size_t to = nearest(facets, centre + g * (facets[t].centre - centre), g * facets[t].normal);
+        const std::size_t to = places.nearest(centre + g * (facets[t].centre - centre), g * facets[t].normal);
         area[std::size_t{patch} * regions.count + regions.region[to]] = covered[patch] = 1;
     }
     for (std::uint32_t p = 0; p < patches.count; ++p)

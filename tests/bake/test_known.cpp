@@ -1,9 +1,12 @@
 // From forces in a few directions to forces in all.
+#include <algorithm>
 #include <cmath>
 
 #include "bake/directions/fit.h"
+#include "bake/directions/fluctuations.h"
 #include "bake/directions/images.h"
 #include "bake/directions/known.h"
+#include "bake/directions/region_forces.h"
 #include "bake/directions/transfer.h"
 #include "bake/regions/regions.h"
 #include "bake/regions/tessellate.h"
@@ -176,5 +179,86 @@ TEST_CASE("forces that are carried over are all there, each where it belongs", "
             CHECK(dot(g * from[s.patch].normal, place[s.region].normal) > 0.5);
         }
         for (const double share : sum) CHECK(share == Approx(1));
+    }
+}
+
+TEST_CASE("a patch is carried to where its triangles' images are", "[directions]") {
+    const Surface ball = tessellate(test::icosphere(0.1, 2), 0.02, 2000).surface;
+    const Regions regions = split_regions(ball, 12), patches = split_regions(ball, 60);
+    const Matrix3 g = rotation_about(Vec3d{2, 3, 6} / 7.0, 1.234);
+    std::vector<double> part(std::size_t{patches.count} * regions.count, 0.0), covered(patches.count, 0.0);
+    const auto middle = [&](std::size_t t) { return (ball.corner(t, 0) + ball.corner(t, 1) + ball.corner(t, 2)) / 3.0; };
+    for (std::size_t t = 0; t < ball.triangles.size(); ++t) {
+        std::size_t from = 0;  // the nearest, by looking at all
+        for (std::size_t k = 0; k < ball.triangles.size(); ++k)
+            if (length(g * middle(k) - middle(t)) < length(g * middle(from) - middle(t))) from = k;
+        const double area = length(cross(ball.corner(t, 1) - ball.corner(t, 0), ball.corner(t, 2) - ball.corner(t, 0)));
+        part[patches.region[from] * regions.count + regions.region[t]] += area;
+        covered[patches.region[from]] += area;
+    }
+    std::size_t found = 0;
+    const Transfer transfer(ball, patches, regions, {}, g);
+    for (const Transfer::Share& s : transfer.shares()) {
+        CHECK(s.share == Approx(part[s.patch * regions.count + s.region] / covered[s.patch]));
+        ++found;
+    }
+    CHECK(found == static_cast<std::size_t>(std::count_if(part.begin(), part.end(), [](double a) { return a > 0; })));
+}
+
+TEST_CASE("one flow alone tells nothing of its error, and asks for no other", "[directions]") {
+    Symmetry round;
+    round.kind = SymmetryKind::spherical;
+    const std::vector<Vec3d> one = distinct_directions(round, 3);
+    REQUIRE(one.size() == 1);
+    const KnownForces known(round, solve(one), 0.2, spacing_of(3));
+    CHECK(known.errors().rms == 0);
+    CHECK(known.errors().worst == 0);
+}
+
+TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'", "[directions]") {
+    const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
+    const Regions regions = split_regions(box, 6);
+    const Symmetry none;
+    const DirectionSet set(1), dense(2);
+    std::vector<TaskResult> flows;
+    std::vector<FlowMeans> means;
+    std::vector<Vec3d> directions;
+    const std::uint32_t period = 64;
+    for (std::uint32_t d = 0; d < set.count(); ++d) {
+        TaskResult r;
+        r.interval = 1;
+        r.samples = period + 16;
+        r.regions = 6;
+        // The first hardly swings as a whole.
+        const float whole = d == 0 ? 1e-4f : 1.0f;
+        for (std::uint32_t s = 0; s < r.samples; ++s) {
+            const float wave = std::sin(2 * 3.14159265f * 4 * static_cast<float>(s) / static_cast<float>(period));
+            for (std::uint32_t l = 0; l < 6; ++l) {
+                const float part = l == 0 ? whole : l % 2 ? 0.5f : -0.5f;
+                for (int c = 0; c < 3; ++c) r.pressure.push_back(c == 0 ? (l == 5 ? 0 : part) * wave : 0);
+                for (int c = 0; c < 3; ++c) r.friction.push_back(0);
+            }
+        }
+        r.torque.assign(std::size_t{r.samples} * 3, 0);
+        flows.push_back(r);
+        means.push_back(means_of(flows.back()));
+        directions.push_back(set.direction(d));
+    }
+    const RegionForces forces({box, regions, regions, none}, means, directions, 0.2, spacing_of(1));
+    std::vector<const TaskResult*> results;
+    for (const TaskResult& r : flows) results.push_back(&r);
+    const FluctuationSpec spec{period, 32, 8, 0};
+    const std::vector<Fluctuation> out = fluctuations(forces, results, 6, dense, spec);
+    for (std::uint32_t d = 0; d < dense.count(); ++d) {
+        double largest[2] = {};
+        for (std::uint32_t l = 0; l < 2; ++l)
+            for (std::uint32_t s = 0; s < 32; ++s)
+                largest[l] = std::max(largest[l], std::fabs(static_cast<double>(out[d][(l * 32 + s) * 6])));
+        const RegionForces::Nearest from = forces.nearest(dense.direction(d));
+        if (from.solved) {
+            CHECK(largest[0] == Approx(from.flow == 0 ? 1e-4 : 1).epsilon(0.01));
+            CHECK(largest[1] == Approx(0.5).epsilon(0.01));
+        }
+        CHECK(largest[1] < 1.01);
     }
 }
