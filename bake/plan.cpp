@@ -49,6 +49,12 @@ constexpr std::uint32_t round_size = 4;     ///< directions added at a time
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
 constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5;
 
+std::string text_of(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", v);
+    return text;
+}
+
 std::string mesh_hash(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
@@ -91,11 +97,7 @@ void add_stream(BakePlan& plan, const Vec3d& direction, double speed) {
         std::snprintf(text, sizeof text, " %.2f", direction[i] + 0.0);
         name += text;
     }
-    if (speed != plan.options.speed) {
-        char text[32];
-        std::snprintf(text, sizeof text, " at %g m/s", speed);
-        name += text;
-    }
+    if (speed != plan.options.speed) name += " at " + text_of(speed) + " m/s";
     add_task(plan, TaskKind::stream, std::move(name), c);
 }
 
@@ -143,7 +145,12 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.speeds.push_back(options.speed);
     std::sort(plan.speeds.begin(), plan.speeds.end());
     plan.speeds.erase(std::unique(plan.speeds.begin(), plan.speeds.end()), plan.speeds.end());
-    require(plan.speeds.size() <= Map::max_speeds, "--speeds: a map holds at most 16");
+    require(plan.speeds.size() <= Map::max_speeds,
+            "--speeds: a map holds at most 16, the base speed among them, not " + std::to_string(plan.speeds.size()));
+    // A map has them in single precision, and would be refused when all is solved.
+    for (std::size_t k = 1; k < plan.speeds.size(); ++k)
+        require(static_cast<float>(plan.speeds[k - 1]) < static_cast<float>(plan.speeds[k]),
+                "--speeds: two are too near to each other to be told apart, " + text_of(plan.speeds[k]) + " m/s");
 
     plan.mesh_hash = mesh_hash(options.mesh);
     const Surface surface = load_surface(options.mesh, plan.notes, options.scale);
@@ -151,6 +158,7 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.surface = sample_triangles(surface, most_triangles);
     plan.regions = options.sources ? split_regions(plan.surface, options.sources)
                                    : choose_regions(plan.surface, {p.region_error}).regions;
+    plan.symmetry.centre = shape.centroid;  // torques are fitted about it, with symmetry or without
     if (options.symmetry) plan.symmetry = find_symmetry(surface);
     if (plan.symmetry.kind == SymmetryKind::finite && plan.symmetry.elements.size() == 1) {
         plan.patches = plan.regions;
@@ -187,6 +195,14 @@ BakePlan plan_bake(const BakeOptions& options) {
         for (const Vec3d& e : first) add_stream(plan, e, plan.speeds[k]);
     if (options.spin) add_spins(plan, shape);
     return plan;
+}
+
+std::size_t most_tasks(const BakePlan& plan) {
+    if (!(plan.budget.rms > 0)) return plan.tasks.size();
+    std::size_t base = 0;
+    for (const Task& task : plan.tasks)
+        base += task.kind == TaskKind::stream && task.flow.speed == plan.options.speed ? 1 : 0;
+    return plan.tasks.size() + std::max<std::size_t>(plan.most_directions, base) - base;
 }
 
 bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results) {

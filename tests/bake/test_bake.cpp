@@ -102,6 +102,11 @@ TEST_CASE("options that cannot be are named", "[bake]") {
     o.sources = 5000;
     CHECK(text_of(o).find("--sources 5000") != std::string::npos);
     o = small_bake();
+    o.speeds = {0.5 + 1e-12};  // not told apart in a map's single precision: it would be refused when all is solved
+    CHECK(text_of(o).find("--speeds: two are too near") != std::string::npos);
+    for (int k = 1; k <= 16; ++k) o.speeds.push_back(k);
+    CHECK(text_of(o).find("at most 16") != std::string::npos);
+    o = small_bake();
     o.mesh = "/nowhere/mesh.glb";
     CHECK(text_of(o).find("/nowhere/mesh.glb") == 0);
     CHECK(frequency_of(18) == 2);
@@ -135,6 +140,17 @@ TEST_CASE("with symmetry or without, a map says the same", "[bake]") {
     }
     // Front and back of a box are solved apart without it: their wakes lean to other sides.
     CHECK(worst < 0.1 * largest);
+}
+
+TEST_CASE("torques are fitted about the centroid with symmetry or without", "[bake]") {
+    BakeOptions options = small_bake();
+    const Vec3d centre = plan_bake(options).symmetry.centre;
+    options.symmetry = false;
+    CHECK(length(plan_bake(options).symmetry.centre - centre) < 1e-9);
+    options.mesh = (std::filesystem::path(__FILE__).parent_path() / "../../samples/meshes/paddle.glb").string();
+    const BakePlan plan = plan_bake(options);
+    CHECK(length(plan.symmetry.centre) > 0.1);  // the frame is that of the hand
+    CHECK(length(plan.symmetry.centre - measure(plan.surface).centroid) < 1e-6);
 }
 
 TEST_CASE("the flows of further speeds and spins are the same job", "[bake]") {
