@@ -46,6 +46,7 @@ constexpr double overlap_share = 0.25;      ///< of the period, faded into its b
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
 constexpr double most_more = 0.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
+constexpr double most_means = 1u << 28, most_fluctuations = 1u << 31;  // numbers (core/map/codec_read.cpp)
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
 constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5;
 
@@ -187,6 +188,14 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.overlap = overlap_share * p.period;
     plan.harmonics = static_cast<std::uint32_t>(harmonics_per_length * plan.period);
     plan.samples = good_length(2 * plan.harmonics + 2);
+
+    const double sources = plan.regions.count;
+    require(sources * plan.directions.count() * static_cast<double>(plan.speeds.size()) * Map::components <= most_means &&
+                sources * plan.fluctuation_directions.count() * plan.samples * Map::components <= most_fluctuations,
+            "--sources, --directions and --speeds together are more than a map holds: " +
+                std::to_string(plan.regions.count) + " sources, " +
+                std::to_string(plan.fluctuation_directions.count()) + " directions, " +
+                std::to_string(plan.speeds.size()) + " speeds");
 
     plan.spacing = spacing_of(frequency);
     if (!options.directions) plan.budget = p.budget;
