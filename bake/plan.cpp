@@ -99,7 +99,12 @@ void add_stream(BakePlan& plan, const Vec3d& direction, double speed) {
         name += text;
     }
     if (speed != plan.options.speed) name += " at " + text_of(speed) + " m/s";
-    add_task(plan, TaskKind::stream, std::move(name), c);
+    try {
+        add_task(plan, TaskKind::stream, std::move(name), c);
+    } catch (const BakeError& error) {
+        if (speed == plan.options.speed) throw;
+        throw BakeError("--speeds " + text_of(speed) + ": " + error.what());
+    }
 }
 
 /// Turns so fast that the fastest point moves at the base speed.

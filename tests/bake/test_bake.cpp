@@ -107,6 +107,10 @@ TEST_CASE("options that cannot be are named", "[bake]") {
     for (int k = 1; k <= 16; ++k) o.speeds.push_back(k);
     CHECK(text_of(o).find("at most 16") != std::string::npos);
     o = small_bake();
+    o.viscosity = 1e-3;
+    o.speeds = {1e-5};
+    CHECK(text_of(o).find("--speeds 1e-05: flow: Reynolds number") == 0);
+    o = small_bake();
     o.quality = Quality::high;  // of its longer series a map cannot hold so many
     o.directions = 1026;
     o.sources = 4096;
