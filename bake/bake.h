@@ -90,6 +90,9 @@ BakePlan plan_bake(const BakeOptions& options);
 /// none: the map can be made.
 bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results);
 
+/// How many tasks a plan can come to at most, all rounds together.
+std::size_t most_tasks(const BakePlan& plan);
+
 /// The map of a plan whose tasks are all done. The same bytes wherever and in whatever order they were. `raw` gets the
 /// tables before they are rounded.
 std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult>& results, BakeReport& report,

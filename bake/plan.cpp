@@ -47,8 +47,15 @@ constexpr double overlap_share = 0.25;      ///< of the period, faded into its b
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
 constexpr double most_more = 0.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
+constexpr double most_means = 1u << 28, most_fluctuations = 1u << 31;  // numbers (core/map/codec_read.cpp)
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
 constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5, most_patches = 1000;
+
+std::string text_of(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", v);
+    return text;
+}
 
 std::string mesh_hash(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -109,12 +116,13 @@ void add_stream(BakePlan& plan, const Vec3d& direction, double speed) {
         std::snprintf(text, sizeof text, " %.2f", direction[i] + 0.0);
         name += text;
     }
-    if (speed != plan.options.speed) {
-        char text[32];
-        std::snprintf(text, sizeof text, " at %g m/s", speed);
-        name += text;
+    if (speed != plan.options.speed) name += " at " + text_of(speed) + " m/s";
+    try {
+        add_task(plan, TaskKind::stream, std::move(name), c);
+    } catch (const BakeError& error) {
+        if (speed == plan.options.speed) throw;
+        throw BakeError("--speeds " + text_of(speed) + ": " + error.what());
     }
-    add_task(plan, TaskKind::stream, std::move(name), c);
 }
 
 /// Turns so fast that the fastest point moves at the base speed.
@@ -161,7 +169,12 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.speeds.push_back(options.speed);
     std::sort(plan.speeds.begin(), plan.speeds.end());
     plan.speeds.erase(std::unique(plan.speeds.begin(), plan.speeds.end()), plan.speeds.end());
-    require(plan.speeds.size() <= Map::max_speeds, "--speeds: a map holds at most 16");
+    require(plan.speeds.size() <= Map::max_speeds,
+            "--speeds: a map holds at most 16, the base speed among them, not " + std::to_string(plan.speeds.size()));
+    // A map has them in single precision, and would be refused when all is solved.
+    for (std::size_t k = 1; k < plan.speeds.size(); ++k)
+        require(static_cast<float>(plan.speeds[k - 1]) < static_cast<float>(plan.speeds[k]),
+                "--speeds: two are too near to each other to be told apart, " + text_of(plan.speeds[k]) + " m/s");
 
     plan.mesh_hash = mesh_hash(options.mesh);
     const Surface surface = load_surface(options.mesh, plan.notes, options.scale);
@@ -169,6 +182,7 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.surface = sample_triangles(surface, most_triangles);
     plan.regions = options.sources ? split_regions(plan.surface, options.sources)
                                    : choose_regions(plan.surface, {p.region_error}).regions;
+    plan.symmetry.centre = shape.centroid;  // torques are fitted about it, with symmetry or without
     if (options.symmetry) plan.symmetry = find_symmetry(surface);
     choose_patches(plan, shape);
 
@@ -191,6 +205,14 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.harmonics = static_cast<std::uint32_t>(harmonics_per_length * plan.period);
     plan.samples = good_length(2 * plan.harmonics + 2);
 
+    const double sources = plan.regions.count;
+    require(
+        sources * plan.directions.count() * static_cast<double>(plan.speeds.size()) * Map::components <= most_means &&
+            sources * plan.fluctuation_directions.count() * plan.samples * Map::components <= most_fluctuations,
+        "--sources, --directions and --speeds together are more than a map holds: " +
+            std::to_string(plan.regions.count) + " sources, " + std::to_string(plan.fluctuation_directions.count()) +
+            " directions, " + std::to_string(plan.speeds.size()) + " speeds");
+
     plan.spacing = spacing_of(frequency);
     if (!options.directions) plan.budget = p.budget;
     plan.most_directions = static_cast<std::uint32_t>(std::ceil((1 + most_more) * static_cast<double>(first.size())));
@@ -198,6 +220,14 @@ BakePlan plan_bake(const BakeOptions& options) {
         for (const Vec3d& e : first) add_stream(plan, e, plan.speeds[k]);
     if (options.spin) add_spins(plan, shape);
     return plan;
+}
+
+std::size_t most_tasks(const BakePlan& plan) {
+    if (!(plan.budget.rms > 0)) return plan.tasks.size();
+    std::size_t base = 0;
+    for (const Task& task : plan.tasks)
+        base += task.kind == TaskKind::stream && task.flow.speed == plan.options.speed ? 1 : 0;
+    return plan.tasks.size() + std::max<std::size_t>(plan.most_directions, base) - base;
 }
 
 bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results) {

@@ -59,16 +59,20 @@ void fill_spin(Map& map, const BakePlan& plan, const std::vector<TaskResult>& re
             if (plan.tasks[k].kind != TaskKind::spin) continue;
             centre = plan.tasks[k].flow.spin_centre;
             const Vec3d spin = plan.tasks[k].flow.spin / length(plan.tasks[k].flow.spin);
-            for (const Matrix3& g : all) {
-                if (length(carried(g, spin) - axes.direction(d)) >= same) continue;
-                const FlowMeans means = means_of(results[k]);
-                const Transfer transfer(carrier, g);
+            // The mean over all that make the same turn of it, as of streams: what a flow has by chance averages out.
+            std::vector<const Matrix3*> by;
+            for (const Matrix3& g : all)
+                if (length(carried(g, spin) - axes.direction(d)) < same) by.push_back(&g);
+            if (by.empty()) continue;
+            found = true;
+            const FlowMeans means = means_of(results[k]);
+            const double part = 1.0 / static_cast<double>(by.size());
+            for (const Matrix3* g : by) {
+                const Transfer transfer(carrier, *g);
                 for (const Transfer::Share& s : transfer.shares()) {
-                    force[s.region].pressure += (g * means.patch[s.patch].pressure) * s.share;
-                    force[s.region].friction += (g * means.patch[s.patch].friction) * s.share;
+                    force[s.region].pressure += (*g * means.patch[s.patch].pressure) * (s.share * part);
+                    force[s.region].friction += (*g * means.patch[s.patch].friction) * (s.share * part);
                 }
-                found = true;
-                break;
             }
         }
         if (!found) throw BakeError("bake: the spin about an axis is missing");

@@ -65,8 +65,12 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
     if (mlups > 0) std::snprintf(speed, sizeof speed, " (%.0f million cell updates a second)", mlups);
     std::printf("%s: %.1f kB, %zu flows, %u sources, in %.1f s%s\n", out.c_str(), static_cast<double>(bytes) / 1e3,
                 plan.tasks.size(), map.source_count(), run.seconds, speed);
-    std::printf("shares of the largest force: between directions %.1f %% rms, %.1f %% at worst; rounded to %.2g %%\n",
-                100 * between.rms, 100 * between.worst, 100 * static_cast<double>(map.facts.quantisation_error));
+    char predicted[64] = "not known (one flow)";
+    if (between.worst > 0)
+        std::snprintf(predicted, sizeof predicted, "%.1f %% rms, %.1f %% at worst", 100 * between.rms,
+                      100 * between.worst);
+    std::printf("shares of the largest force: between directions %s; rounded to %.2g %%\n", predicted,
+                100 * static_cast<double>(map.facts.quantisation_error));
     std::printf("mean drag is uncertain by %.1f %% (statistics of the worst direction)\n", 100 * worst);
 }
 

@@ -52,15 +52,27 @@ void print_map(const frm_map_info& i, const nlohmann::ordered_json& made) {
     row("bounds", "(%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m", d(i.bounds_low.x), d(i.bounds_low.y), d(i.bounds_low.z),
         d(i.bounds_high.x), d(i.bounds_high.y), d(i.bounds_high.z));
     for (const auto& [key, value] : made.items())
-        if (key != "directions")
+        if (key != "directions" && key != "spins")
             row(key.c_str(), "%s", value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
-    if (!made.contains("directions")) return;
-    std::printf("\n%-26s %8s %12s %10s %10s\n", "direction", "drag cf.", "uncertainty", "Re solved", "blockage");
-    for (const auto& one : made["directions"]) {
+    if (made.contains("directions")) {
+        std::printf("\n%-26s %8s %8s %12s %10s %10s\n", "direction", "m/s", "drag cf.", "uncertainty", "Re solved",
+                    "blockage");
+        for (const auto& one : made["directions"]) {
+            const auto& e = one["direction"];
+            // Maps of before there were several have it in the facts alone.
+            std::printf("(%6.3f, %6.3f, %6.3f)   %8.4g %8.3f %10.1f %% %10.3g %8.1f %%\n", e[0].get<double>(),
+                        e[1].get<double>(), e[2].get<double>(), one.value("speed", d(i.base_speed)),
+                        one["drag_coefficient"].get<double>(), 100 * one["uncertainty"].get<double>(),
+                        one["reynolds_solved"].get<double>(), 100 * one["blockage"].get<double>());
+        }
+    }
+    if (!made.contains("spins")) return;
+    std::printf("\n%-26s %8s %21s %10s\n", "turn about", "rad/s", "uncertainty", "Re solved");
+    for (const auto& one : made["spins"]) {
         const auto& e = one["direction"];
-        std::printf("(%6.3f, %6.3f, %6.3f)   %8.3f %10.1f %% %10.3g %8.1f %%\n", e[0].get<double>(), e[1].get<double>(),
-                    e[2].get<double>(), one["drag_coefficient"].get<double>(), 100 * one["uncertainty"].get<double>(),
-                    one["reynolds_solved"].get<double>(), 100 * one["blockage"].get<double>());
+        std::printf("(%6.3f, %6.3f, %6.3f)   %8.4g %19.1f %% %10.3g\n", e[0].get<double>(), e[1].get<double>(),
+                    e[2].get<double>(), one["rate"].get<double>(), 100 * one["uncertainty"].get<double>(),
+                    one["reynolds_solved"].get<double>());
     }
 }
 

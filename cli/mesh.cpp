@@ -211,6 +211,7 @@ void add_mesh(CLI::App& app) {
                           "the 6x6 added mass in unbounded water without friction, and its estimated error");
     command->add_option("--density", o.density, "of the fluid of --added-mass, kg/m^3")
         ->check(density_range())
+        ->type_name("N")
         ->capture_default_str()
         ->needs(added_mass);
     command->add_flag("--regions", o.regions,

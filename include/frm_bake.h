@@ -61,32 +61,45 @@ typedef enum frm_bake_stage {
 
 typedef struct frm_bake_def {
     uint32_t struct_size;
-    uint32_t quality;    /* frm_bake_quality; default FRM_BAKE_STANDARD */
-    const char *mesh;    /* path of a .glb or .gltf, UTF-8; required */
-    const char *work;    /* folder for finished flows, made if need be, a sub-folder for each set of options; null
-                            (default): they are kept in memory alone, and are lost with the process */
-    double scale;        /* what the mesh's coordinates are multiplied by to be metres, 1e-6 to 1e6; default 1 */
-    double speed;        /* of the stream, 1e-6 to 1e4 m/s; default 0.5 */
-    double density;      /* 1e-3 to 1e5 kg/m^3; default 1000 */
-    double viscosity;    /* kinematic, 1e-9 to 1e2 m^2/s; default 1e-6 */
-    double resolution;   /* grid cells across the object, 4 to 512; default 0: by quality */
-    uint32_t directions; /* 6, 18, 38, 66, 102, ...; default 0: by quality */
-    uint32_t sources;    /* 1 to 4096; default 0: by quality */
-    uint32_t triangles;  /* sample triangles at most, 4 to 2097152; default 0: 2000 */
-    uint32_t threads;    /* 1 to 256; default 0: as many as OpenMP gives */
+    uint32_t quality;     /* frm_bake_quality; default FRM_BAKE_STANDARD */
+    const char *mesh;     /* path of a .glb or .gltf, UTF-8; required */
+    const char *work;     /* folder for finished flows, made if need be, a sub-folder for each set of options; null
+                             (default): they are kept in memory alone, and are lost with the process */
+    double scale;         /* what the mesh's coordinates are multiplied by to be metres, 1e-6 to 1e6; default 1 */
+    double density;       /* 1e-3 to 1e5 kg/m^3; default 1000 */
+    double viscosity;     /* kinematic, 1e-9 to 1e2 m^2/s; default 1e-6 */
+    double speed;         /* of the stream, 1e-6 to 1e4 m/s; default 0.5 */
+    const double *speeds; /* speed_count further speeds in the same range, in any order: the map then follows the
+                             Reynolds number. Each costs as much as the first. Default null: none */
+    uint32_t speed_count; /* 0 to 15; one that is `speed`, or there twice, counts once */
+    uint32_t spin;        /* 1: turns about three axes in still water are solved too; default 0 */
+    uint32_t added_mass;  /* 0: the map has none; default 1 */
+    uint32_t symmetry;    /* 0: solve every direction, whatever symmetry the mesh has; default 1 */
+    double resolution;    /* grid cells across the object, 4 to 512; default 0: by quality */
+    uint32_t directions;  /* exactly so many, before symmetry: 6, 18, 38, 66, 102, ... 1026; default 0: by quality, and
+                             more where the force bends */
+    uint32_t sources;     /* 1 to 4096; default 0: by their error */
+    uint32_t triangles;   /* sample triangles at most, 4 to 2097152; default 0: 2000 */
+    uint32_t threads;     /* 1 to 256; default 0: as many as OpenMP gives */
+    double threshold;     /* harmonics of the fluctuation below this share of the largest mean force are dropped, 0 to 1;
+                             default 2e-4 */
 } frm_bake_def;
 
 typedef struct frm_bake_plan_info {
     uint32_t struct_size;
-    uint32_t flows;      /* runs of the flow solver; their results may ask for more */
+    uint32_t flows;      /* runs of the flow solver */
     uint32_t flows_done; /* that the work folder has */
-    uint32_t directions;
+    uint32_t most_flows; /* that it can come to: `flows`, unless what they find asks for more directions */
+    uint32_t directions; /* that the map stores means for */
     uint32_t sources;
     uint32_t triangles;
-    double updates;      /* cell updates of all flows; a core does some 1e8 a second */
+    uint32_t isometries; /* that carry the object into itself and are made use of; 1: it has no symmetry, 0: infinitely
+                            many, as of a cylinder or a sphere */
+    double updates;      /* cell updates of `flows`; a core does some 1e8 a second */
     uint64_t flow_bytes; /* memory of a flow; several run at a time */
     double extent;       /* longest side of the object, after scale, m: what is not between 5 mm and 20 m was probably
                             drawn in another unit */
+    char symmetry[96];   /* for people: "none", "8 elements: 4 rotations, 4 reflections", ... */
 } frm_bake_plan_info;
 
 typedef struct frm_bake_progress {
@@ -98,7 +111,7 @@ typedef struct frm_bake_progress {
     uint32_t flows_done;
     float drag;           /* running mean drag coefficient of the flow named; 0 while it starts */
     float uncertainty;    /* its standard error, as a share; 0 while not known */
-    char flow[64];        /* its name, such as "direction 12"; empty while other processes have what is left */
+    char flow[64];        /* its name, such as "direction 0.71 0.00 -0.71"; empty while other processes have what is left */
 } frm_bake_progress;
 
 /* The version of the library that runs. Each pointer may be null. [any] */
@@ -117,7 +130,7 @@ FRM_API frm_status FRM_CALL frm_bake_destroy(frm_bake bake);
 /* The text of the last error of this bake: two-call rule of frm_context_last_error. [any] */
 FRM_API frm_status FRM_CALL frm_bake_last_error(frm_bake bake, char *text, uint64_t capacity, uint64_t *size);
 
-/* Reads the mesh and says what the bake will take; `info` may be null. Strings of the def are copied.
+/* Reads the mesh and says what the bake will take; `info` may be null. What the def points to is copied.
  * FRM_ERROR_ARGUMENT: an option is out of range, or the mesh cannot be baked; the text names which and what to do.
  * FRM_ERROR_FILE: the work folder. FRM_ERROR_STATE: while it runs. A plan and a map that were there are gone, also
  * where this fails after its arguments were checked. [offline] */

@@ -1,5 +1,7 @@
 // The C entry points of frm_bake.h: arguments are checked before anything changes, no exception gets out.
 #include <array>
+#include <cstdio>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -63,10 +65,20 @@ frm_bake_def defaults() {
     frm_bake_def def{};
     def.quality = FRM_BAKE_STANDARD;
     def.scale = o.scale;
-    def.speed = o.speed;
     def.density = o.density;
     def.viscosity = o.viscosity;
+    def.speed = o.speed;
+    def.spin = o.spin;
+    def.added_mass = o.added_mass;
+    def.symmetry = o.symmetry;
+    def.threshold = o.threshold;
     return def;
+}
+
+constexpr std::uint32_t most_further_speeds = Map::max_speeds - 1;
+
+void require_switch(std::uint32_t value, const char* name) {
+    if (value > 1) throw Error(FRM_ERROR_ARGUMENT, "%s = %u is neither 0 nor 1", name, value);
 }
 
 bake::BakeOptions options_of(const frm_bake_def& def) {
@@ -75,9 +87,20 @@ bake::BakeOptions options_of(const frm_bake_def& def) {
     if (def.quality > FRM_BAKE_HIGH)
         throw Error(FRM_ERROR_ARGUMENT, "def.quality = %u is no frm_bake_quality", def.quality);
     require_range(def.scale, 1e-6, 1e6, "def.scale");
-    require_range(def.speed, 1e-6, 1e4, "def.speed");
     require_range(def.density, 1e-3, 1e5, "def.density");
     require_range(def.viscosity, 1e-9, 1e2, "def.viscosity");
+    require_range(def.speed, 1e-6, 1e4, "def.speed");
+    require_range(def.speed_count, 0, most_further_speeds, "def.speed_count");
+    if (def.speed_count > 0) api::require_pointer(def.speeds, "def.speeds");
+    for (std::uint32_t k = 0; k < def.speed_count; ++k) {
+        char name[32];
+        std::snprintf(name, sizeof name, "def.speeds[%u]", k);
+        require_range(def.speeds[k], 1e-6, 1e4, name);
+    }
+    require_switch(def.spin, "def.spin");
+    require_switch(def.added_mass, "def.added_mass");
+    require_switch(def.symmetry, "def.symmetry");
+    require_range(def.threshold, 0, 1, "def.threshold");
     if (def.resolution != 0) require_range(def.resolution, 4, 512, "def.resolution");
     if (def.directions != 0 && bake::frequency_of(def.directions) == 0)
         throw Error(FRM_ERROR_ARGUMENT, "def.directions = %u is not 6, 18, 38, 66, 102, ... up to 1026",
@@ -91,9 +114,14 @@ bake::BakeOptions options_of(const frm_bake_def& def) {
     o.quality = def.quality == FRM_BAKE_DRAFT  ? bake::Quality::draft
                 : def.quality == FRM_BAKE_HIGH ? bake::Quality::high
                                                : bake::Quality::standard;
-    o.speed = def.speed;
     o.density = def.density;
     o.viscosity = def.viscosity;
+    o.speed = def.speed;
+    if (def.speed_count > 0) o.speeds.assign(def.speeds, def.speeds + def.speed_count);
+    o.spin = def.spin != 0;
+    o.added_mass = def.added_mass != 0;
+    o.symmetry = def.symmetry != 0;
+    o.threshold = def.threshold;
     o.resolution = def.resolution;
     o.directions = def.directions;
     o.sources = def.sources;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 
 #include "bake/tasks/durable.h"
@@ -77,6 +78,7 @@ void Job::plan(const BakeOptions& options, const std::string& work, frm_bake_pla
     const Vec3d size = shape.high - shape.low;
     info.flows = static_cast<std::uint32_t>(first_->tasks.size());
     info.flows_done = store_ ? static_cast<std::uint32_t>(store_->count(first_->tasks.size())) : 0;
+    info.most_flows = static_cast<std::uint32_t>(most_tasks(*first_));
     info.directions = first_->directions.count();
     info.sources = first_->regions.count;
     info.triangles = static_cast<std::uint32_t>(first_->surface.triangles.size());
@@ -84,6 +86,10 @@ void Job::plan(const BakeOptions& options, const std::string& work, frm_bake_pla
         info.updates += task.cost.updates;
         info.flow_bytes = std::max(info.flow_bytes, task.cost.bytes);
     }
+    info.isometries = first_->symmetry.kind == SymmetryKind::finite
+                          ? static_cast<std::uint32_t>(first_->symmetry.elements.size())
+                          : 0;
+    std::snprintf(info.symmetry, sizeof info.symmetry, "%s", describe(first_->symmetry).c_str());
     info.extent = std::max({size.x, size.y, size.z});
     const std::lock_guard<std::mutex> lock(lock_);
     stage_ = FRM_BAKE_PLANNED;

@@ -48,7 +48,8 @@ private:
     std::uint32_t groups_ = 0;
 };
 
-/// The model that predicts each group best from the others (leave-one-out cross-validation), among a few.
+/// The model that predicts each group best from the others (leave-one-out cross-validation), among a few. Of many
+/// groups, some are asked.
 FitModel choose_model(const std::vector<FitSite>& sites, const std::vector<FitValue>& values);
 
 }  // namespace frm::bake

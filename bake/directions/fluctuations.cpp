@@ -12,6 +12,7 @@ namespace frm::bake {
 namespace {
 
 constexpr std::size_t components = 6;
+constexpr double most_level = 2;
 
 /// The force at each sample, [sample][region][component], of the image of a flow.
 std::vector<float> carried(const TaskResult& result, const Transfer& transfer, std::uint32_t regions) {
@@ -83,9 +84,11 @@ std::vector<Fluctuation> fluctuations(const RegionForces& forces, const std::vec
         const Vec3d e = directions.direction(d);
         const RegionForces::Nearest from = forces.nearest(e);
         Fluctuation f = one_direction(*results[from.flow], *from.transfer, regions, spec);
-        // Between flows the strength is the fit's, not the nearest one's.
+        // Between flows the strength is the fit's, not the nearest one's: within bounds, since regions may swing
+        // strongly where the whole hardly does.
         const double own = forces.flows()[from.flow].rms;
-        const auto level = static_cast<float>(own > 0 ? forces.rms(e) / own : 1.0);
+        const auto level =
+            static_cast<float>(from.solved || !(own > 0) ? 1.0 : std::min(most_level, forces.rms(e) / own));
         for (float& v : f) v *= level;
         wholes.push_back(whole(f, regions, spec.samples));
         out.push_back(std::move(f));

@@ -48,7 +48,8 @@ Matrix3 turning(const Vec3d& a, const Vec3d& b) {
 std::vector<Image> images(const Symmetry& symmetry, const Vec3d& direction, double spacing) {
     Gatherer out(direction);
     if (symmetry.kind == SymmetryKind::spherical) {
-        const auto frequency = static_cast<std::uint32_t>(std::clamp(std::ceil(std::sqrt(pi) / spacing), 1.0, most_frequency));
+        const auto frequency =
+            static_cast<std::uint32_t>(std::clamp(std::ceil(std::sqrt(pi) / spacing), 1.0, most_frequency));
         const DirectionSet lattice(frequency);
         const auto about_stream = [&](const Matrix3& first) {
             const Vec3d e = first * direction;

@@ -76,6 +76,7 @@ KnownForces::KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirec
 DirectionErrors KnownForces::errors() const {
     // A flow counts as the share of the sphere that its images cover: those along an axis have fewer of them.
     DirectionErrors out;
+    if (images_.size() < 2) return out;
     for (const double e : error_) {
         out.rms += e * e / static_cast<double>(error_.size());
         out.worst = std::max(out.worst, e);

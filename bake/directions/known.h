@@ -31,7 +31,7 @@ public:
     std::size_t first_site(std::size_t k) const { return first_[k]; }
     const DirectionFit& fit() const { return fit_; }
 
-    /// Every solved direction predicted from the others.
+    /// Every solved direction predicted from the others; zero, which is not known, where there is one only.
     DirectionErrors errors() const;
     /// Solved direction k predicted from the others: the worst of its images, share of the largest force.
     double error_of(std::size_t k) const;

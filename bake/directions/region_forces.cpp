@@ -38,8 +38,7 @@ RegionForces::RegionForces(const Carrier& carrier, const Symmetry& symmetry, std
             sites.push_back({image.direction, k});
         }
     }
-    // Of a record a few sheddings long the strength is known to some tenths: no fit of it can be chosen by how well it
-    // predicts. Each flow keeps its own.
+    // Of a record a few sheddings long the strength is known to some tenths: too little to choose a fit by.
     rms_fit_ = std::make_unique<DirectionFit>(sites, FitModel{1, 1e-2});
 }
 
@@ -72,7 +71,8 @@ double RegionForces::rms(const Vec3d& e) const {
 }
 
 RegionForces::Nearest RegionForces::nearest(const Vec3d& e) const {
-    constexpr double nearer = 1e-9;  // by more than rounding: of images equally near, the first
+    constexpr double same_direction = 1e-6;  // chord
+    constexpr double nearer = 1e-9;          // by more than rounding: of images equally near, the first
     double best = -2;
     Nearest out;
     for (std::size_t k = 0; k < means_.size(); ++k) {
@@ -80,6 +80,7 @@ RegionForces::Nearest RegionForces::nearest(const Vec3d& e) const {
             if (!(dot(image.direction, e) > best + nearer)) continue;
             best = dot(image.direction, e);
             out.flow = k;
+            out.solved = length(image.direction - e) < same_direction;
             out.transfer = std::find_if(transfers_.begin(), transfers_.end(), [&](const auto& t) {
                                return same(t->g(), image.by.front());
                            })->get();

@@ -26,6 +26,7 @@ public:
     struct Nearest {
         std::size_t flow = 0;
         const Transfer* transfer = nullptr;
+        bool solved = false;  ///< e is that image
     };
     Nearest nearest(const Vec3d& e) const;
 

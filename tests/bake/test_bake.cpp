@@ -111,6 +111,21 @@ TEST_CASE("options that cannot be are named", "[bake]") {
     o.sources = 5000;
     CHECK(text_of(o).find("--sources 5000") != std::string::npos);
     o = small_bake();
+    o.speeds = {0.5 + 1e-12};  // not told apart in a map's single precision: it would be refused when all is solved
+    CHECK(text_of(o).find("--speeds: two are too near") != std::string::npos);
+    for (int k = 1; k <= 16; ++k) o.speeds.push_back(k);
+    CHECK(text_of(o).find("at most 16") != std::string::npos);
+    o = small_bake();
+    o.viscosity = 1e-3;
+    o.speeds = {1e-5};
+    CHECK(text_of(o).find("--speeds 1e-05: flow: Reynolds number") == 0);
+    o = small_bake();
+    o.quality = Quality::high;  // of its longer series a map cannot hold so many
+    o.directions = 1026;
+    o.sources = 4096;
+    o.triangles = 20000;
+    CHECK(text_of(o).find("more than a map holds") != std::string::npos);
+    o = small_bake();
     o.mesh = "/nowhere/mesh.glb";
     CHECK(text_of(o).find("/nowhere/mesh.glb") == 0);
     CHECK(frequency_of(18) == 2);
@@ -146,6 +161,17 @@ TEST_CASE("with symmetry or without, a map says the same", "[bake]") {
     CHECK(worst < 0.1 * largest);
 }
 
+TEST_CASE("torques are fitted about the centroid with symmetry or without", "[bake]") {
+    BakeOptions options = small_bake();
+    const Vec3d centre = plan_bake(options).symmetry.centre;
+    options.symmetry = false;
+    CHECK(length(plan_bake(options).symmetry.centre - centre) < 1e-9);
+    options.mesh = (std::filesystem::path(__FILE__).parent_path() / "../../samples/meshes/paddle.glb").string();
+    const BakePlan plan = plan_bake(options);
+    CHECK(length(plan.symmetry.centre) > 0.1);  // the frame is that of the hand
+    CHECK(length(plan.symmetry.centre - measure(plan.surface).centroid) < 1e-6);
+}
+
 TEST_CASE("the flows of further speeds and spins are the same job", "[bake]") {
     BakeOptions options = small_bake();
     options.speeds = {0.1};
@@ -161,7 +187,8 @@ TEST_CASE("the flows of further speeds and spins are the same job", "[bake]") {
     // Torque of a turn about -x is that about +x, the other way round.
     const DirectionSet axes(1);
     for (int axis = 0; axis < 3; ++axis) {
-        double torque[2] = {};
+        double torque[2] = {}, gross = 0;
+        Vec3d net[2];
         for (std::uint32_t d = 0; d < 6; ++d) {
             const Vec3d e = axes.direction(d);
             if (e[axis] == 0) continue;
@@ -172,9 +199,14 @@ TEST_CASE("the flows of further speeds and spins are the same job", "[bake]") {
                 const SourceForce& more = map->spin.force[d * map->source_count() + l];
                 const Vec3d f(local.pressure + local.friction + more.pressure + more.friction);
                 torque[e[axis] > 0] += cross(Vec3d(arm), f)[axis];
+                net[e[axis] > 0] += f;
+                gross += length(f);
             }
         }
         CHECK(torque[1] < 0);
         CHECK(torque[0] == Approx(-torque[1]).epsilon(0.02));
+        // Half a turn about the axis and the mirror across it leave nothing to push the box anywhere.
+        CHECK(length(net[0]) < 1e-4 * gross);
+        CHECK(length(net[1]) < 1e-4 * gross);
     }
 }

@@ -1,9 +1,15 @@
 // From forces in a few directions to forces in all.
+#include <algorithm>
 #include <cmath>
 
 #include "bake/directions/fit.h"
+#include "bake/directions/fluctuations.h"
 #include "bake/directions/images.h"
 #include "bake/directions/known.h"
+#include "bake/directions/region_forces.h"
+#include "bake/directions/transfer.h"
+#include "bake/regions/regions.h"
+#include "bake/regions/tessellate.h"
 #include "core/map/directions.h"
 #include "tests/support/catch.h"
 #include "tests/support/shapes.h"
@@ -157,4 +163,63 @@ TEST_CASE("bodies of revolution are solved along half a circle, spheres once", "
             CHECK(length(g * Vec3d{1, 0, 0} - image.direction) < 1e-9);
             CHECK(std::fabs(determinant(g)) == Approx(1));
         }
+}
+
+TEST_CASE("one flow alone tells nothing of its error, and asks for no other", "[directions]") {
+    Symmetry round;
+    round.kind = SymmetryKind::spherical;
+    const std::vector<Vec3d> one = distinct_directions(round, 3);
+    REQUIRE(one.size() == 1);
+    const KnownForces known(round, solve(one), 0.2, spacing_of(3));
+    CHECK(known.errors().rms == 0);
+    CHECK(known.errors().worst == 0);
+}
+
+TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'", "[directions]") {
+    const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
+    const Regions regions = split_regions(box, 6);
+    const Symmetry none;
+    const DirectionSet set(1), dense(2);
+    std::vector<TaskResult> flows;
+    std::vector<FlowMeans> means;
+    std::vector<Vec3d> directions;
+    const std::uint32_t period = 64;
+    for (std::uint32_t d = 0; d < set.count(); ++d) {
+        TaskResult r;
+        r.interval = 1;
+        r.samples = period + 16;
+        r.regions = 6;
+        // The first hardly swings as a whole.
+        const float whole = d == 0 ? 1e-4f : 1.0f;
+        for (std::uint32_t s = 0; s < r.samples; ++s) {
+            const float wave = std::sin(2 * 3.14159265f * 4 * static_cast<float>(s) / static_cast<float>(period));
+            for (std::uint32_t l = 0; l < 6; ++l) {
+                const float part = l == 0 ? whole : l % 2 ? 0.5f : -0.5f;
+                for (int c = 0; c < 3; ++c) r.pressure.push_back(c == 0 ? (l == 5 ? 0 : part) * wave : 0);
+                for (int c = 0; c < 3; ++c) r.friction.push_back(0);
+            }
+        }
+        r.torque.assign(std::size_t{r.samples} * 3, 0);
+        flows.push_back(r);
+        means.push_back(means_of(flows.back()));
+        directions.push_back(set.direction(d));
+    }
+    const Landing landing(box, 1e-6);
+    const RegionForces forces({box, regions, regions, {}, landing}, none, means, directions, 0.2, spacing_of(1));
+    std::vector<const TaskResult*> results;
+    for (const TaskResult& r : flows) results.push_back(&r);
+    const FluctuationSpec spec{period, 32, 8, 0};
+    const std::vector<Fluctuation> out = fluctuations(forces, results, 6, dense, spec);
+    for (std::uint32_t d = 0; d < dense.count(); ++d) {
+        double largest[2] = {};
+        for (std::uint32_t l = 0; l < 2; ++l)
+            for (std::uint32_t s = 0; s < 32; ++s)
+                largest[l] = std::max(largest[l], std::fabs(static_cast<double>(out[d][(l * 32 + s) * 6])));
+        const RegionForces::Nearest from = forces.nearest(dense.direction(d));
+        if (from.solved) {
+            CHECK(largest[0] == Approx(from.flow == 0 ? 1e-4 : 1).epsilon(0.01));
+            CHECK(largest[1] == Approx(0.5).epsilon(0.01));
+        }
+        CHECK(largest[1] < 1.01);
+    }
 }

@@ -24,21 +24,23 @@ def baked(good, box, tmp_path_factory):
 def test_it_leaves_one_file_and_says_what(baked):
     path, outcome = baked
     assert names(path.parent) == ["a box.frm"]
-    assert str(path) in outcome.out and "6 directions" in outcome.out
-    assert "cell updates" in outcome.err
+    assert str(path) in outcome.out and "3 flows" in outcome.out
+    assert "cell updates" in outcome.err and "symmetry: 8 elements" in outcome.err
 
 
 def test_same_bytes_with_two_threads(good, box, baked, tmp_path):
     outcome = good("bake", box, "-o", tmp_path / "b.frm", *SMALL, "--threads", 2, "--json")
     assert (tmp_path / "b.frm").read_bytes() == baked[0].read_bytes()
-    assert outcome.json["directions"] == 6 and outcome.json["sources"] == 6
+    # Six directions, of which symmetry leaves three; the means are stored for the 146 that a draft has.
+    assert (outcome.json["flows"], outcome.json["directions"], outcome.json["sources"]) == (3, 146, 6)
     assert outcome.json["file_bytes"] == baked[0].stat().st_size
 
 
 def test_info_verify_and_force_take_it(good, baked):
     info = good("info", baked[0], "--json").json
-    assert (info["sources"], info["directions"]) == (6, 6)
-    assert info["provenance"]["mesh"] == "box.glb" and len(info["provenance"]["directions"]) == 6
+    assert (info["sources"], info["directions"], info["fluctuation_directions"]) == (6, 146, 6)
+    assert info["provenance"]["mesh"] == "box.glb" and len(info["provenance"]["directions"]) == 3
+    assert info["provenance"]["symmetry"] == {"kind": "finite", "isometries": 8}
     assert "box.glb" in good("info", baked[0]).out
     assert "sound" in good("verify", baked[0]).out
     force = good("force", baked[0], "--velocity", "-0.5,0,0", "--json").json

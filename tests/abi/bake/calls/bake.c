@@ -47,6 +47,7 @@ static void small(frm_bake_def *def, const char *mesh) {
     def->mesh = mesh;
     def->quality = FRM_BAKE_DRAFT;
     def->directions = 6;
+    def->symmetry = 0; /* six flows */
     def->sources = 6;
     def->resolution = 4;
 }
@@ -70,7 +71,8 @@ static void without_a_bake(void) {
     OK(frm_bake_def_init(&def, sizeof def));
     CHECK(!def.mesh && !def.work && def.scale == 1 && def.speed == 0.5 && def.density == 1000 &&
           def.viscosity == 1e-6 && def.resolution == 0 && def.directions == 0 && def.sources == 0 &&
-          def.triangles == 0 && def.threads == 0);
+          def.triangles == 0 && def.threads == 0 && !def.speeds && def.speed_count == 0 && def.spin == 0 &&
+          def.added_mass == 1 && def.symmetry == 1 && def.threshold == 2e-4);
     EXPECT(FRM_ERROR_ARGUMENT, NULL, frm_bake_create(NULL));
     while (made < 64 && frm_bake_create(&many[made]) == FRM_OK) ++made;
     CHECK(made == 63); /* and `bake` */
@@ -115,6 +117,7 @@ static void too_early(void) {
     } while (0)
 
 static void bad_defs(const char *mesh) {
+    static const double speeds[] = {0.1, 0, 1}, same[] = {0.1, 0.1000000001};
     struct {
         frm_bake_def def;
         uint64_t more;
@@ -134,6 +137,19 @@ static void bad_defs(const char *mesh) {
     BAD(directions, 7, "def.directions = 7");
     BAD(sources, 4097, "def.sources");
     BAD(triangles, 3, "def.triangles");
+    BAD(spin, 2, "def.spin = 2");
+    BAD(added_mass, 2, "def.added_mass = 2");
+    BAD(symmetry, 0x55555555u, "def.symmetry");
+    BAD(threshold, 1.5, "def.threshold");
+    BAD(speed_count, 1, "def.speeds is null");
+    BAD(speed_count, 16, "def.speed_count");
+    small(&def, mesh);
+    def.speeds = speeds;
+    def.speed_count = 3;
+    EXPECT(FRM_ERROR_ARGUMENT, "def.speeds[1]", frm_bake_plan(bake, &def, NULL));
+    def.speeds = same;
+    def.speed_count = 2;
+    EXPECT(FRM_ERROR_ARGUMENT, "speeds: two are too near", frm_bake_plan(bake, &def, NULL));
     BAD(threads, 257, "def.threads");
     small(&def, mesh);
     def.struct_size = 3;
@@ -148,6 +164,28 @@ static void bad_defs(const char *mesh) {
     EXPECT(FRM_ERROR_VERSION, "info", frm_bake_plan(bake, &def, &info));
     def.work = "/proc/nowhere/work";
     EXPECT(FRM_ERROR_FILE, "/proc/nowhere/work", frm_bake_plan(bake, &def, NULL));
+}
+
+/* What the options make of the plan. */
+static void plans(const char *mesh) {
+    static const double speeds[] = {2, 0.5, 0.1}; /* one is the base speed */
+    frm_bake_def def;
+    frm_bake_plan_info info = {sizeof info};
+    small(&def, mesh);
+    def.symmetry = 1;
+    OK(frm_bake_plan(bake, &def, &info));
+    CHECK(info.flows == 3 && info.most_flows == 3 && info.isometries == 8);
+    CHECK(strstr(info.symmetry, "4 reflections") != NULL);
+    def.spin = 1;
+    def.speeds = speeds;
+    def.speed_count = 3;
+    OK(frm_bake_plan(bake, &def, &info));
+    CHECK(info.flows == 3 * 3 + 3 && info.most_flows == info.flows);
+    OK(frm_bake_def_init(&def, sizeof def));
+    def.mesh = mesh;
+    def.resolution = 4;
+    OK(frm_bake_plan(bake, &def, &info));
+    CHECK(info.flows == 10 && info.most_flows == 15); /* at standard quality, half as many again */
 }
 
 static frm_bake_progress progress_of(void) {
@@ -169,7 +207,8 @@ static char *kept_work(const char *mesh, const char *work, uint64_t *size) {
     def.work = work;
     def.threads = 1;
     OK(frm_bake_plan(bake, &def, &info));
-    CHECK(info.flows == 6 && info.flows_done == 0 && info.directions == 6 && info.sources == 6);
+    CHECK(info.flows == 6 && info.flows_done == 0 && info.directions == 146 && info.sources == 6);
+    CHECK(info.most_flows == 6 && info.isometries == 1 && strcmp(info.symmetry, "none") == 0);
     CHECK(info.updates > 1e6 && info.flow_bytes > 1000 && info.extent > 0.2 && info.extent < 0.5);
     CHECK(progress_of().stage == FRM_BAKE_PLANNED);
     OK(frm_bake_start(bake));
@@ -277,6 +316,7 @@ int main(int argc, char **argv) {
     without_a_bake();
     too_early();
     bad_defs(argv[1]);
+    plans(argv[1]);
     map = kept_work(argv[1], work, &size);
     files(argv[2], work, map, size);
     same_again(argv[1], map, size);
