@@ -130,11 +130,13 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
         report.uncertainty = std::max(report.uncertainty, report.flows[k].uncertainty);
     }
 
-    const Carrier carrier{plan.surface, plan.patches, plan.regions, plan.symmetry};
+    const Landing landing(plan.surface, plan.landing_tolerance);
+    const Carrier carrier{plan.surface, plan.patches, plan.regions, plan.symmetry.centre, landing};
     Tables tables;
     for (const double speed : plan.speeds) {
         const Streams streams = streams_at(plan, results, speed);
-        const RegionForces forces(carrier, streams.means, streams.directions, plan.reference_length, plan.spacing);
+        const RegionForces forces(carrier, plan.symmetry, streams.means, streams.directions, plan.reference_length,
+                                  plan.spacing);
         add_means(tables, plan, forces);
         if (speed != options.speed) continue;
         report.direction_errors = forces.known().errors();

@@ -7,6 +7,7 @@
 
 #include "bake/bake.h"
 #include "bake/directions/known.h"
+#include "bake/directions/transfer.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
 #include "bake/regions/choose.h"
@@ -48,7 +49,7 @@ constexpr double most_more = 0.5;           ///< directions added at most, as a 
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
 constexpr double most_means = 1u << 28, most_fluctuations = 1u << 31;  // numbers (core/map/codec_read.cpp)
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
-constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5;
+constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5, most_patches = 1000;
 
 std::string text_of(double v) {
     char text[32];
@@ -66,6 +67,23 @@ std::string mesh_hash(const std::string& path) {
 
 void require(bool good, const std::string& text) {
     if (!good) throw BakeError(text);
+}
+
+/// What flows are recorded on: of a finite group as many patches as carry exactly; of a continuous one, or where these
+/// are too many to be worth their memory, patches some times smaller than the regions.
+void choose_patches(BakePlan& plan, const SurfaceProperties& shape) {
+    const Symmetry& symmetry = plan.symmetry;
+    plan.landing_tolerance = std::max(symmetry.tolerance, 1e-6 * length(shape.high - shape.low));
+    const bool finite = symmetry.kind == SymmetryKind::finite;
+    if (finite) {
+        const Landing landing(plan.surface, plan.landing_tolerance);
+        plan.patches = patches_for(plan.surface, plan.regions, symmetry.elements, symmetry.centre, landing);
+        if (plan.patches.count <= std::max(most_patches, plan.regions.count)) return;
+    }
+    const auto triangles = static_cast<std::uint32_t>(plan.surface.triangles.size());
+    const std::uint32_t wanted =
+        std::min({patches_per_region * plan.regions.count, triangles / triangles_per_patch, most_patches});
+    plan.patches = wanted > plan.regions.count ? split_regions(plan.surface, wanted) : plan.regions;
 }
 
 void add_task(BakePlan& plan, TaskKind kind, std::string name, const FlowCase& flow) {
@@ -166,14 +184,7 @@ BakePlan plan_bake(const BakeOptions& options) {
                                    : choose_regions(plan.surface, {p.region_error}).regions;
     plan.symmetry.centre = shape.centroid;  // torques are fitted about it, with symmetry or without
     if (options.symmetry) plan.symmetry = find_symmetry(surface);
-    if (plan.symmetry.kind == SymmetryKind::finite && plan.symmetry.elements.size() == 1) {
-        plan.patches = plan.regions;
-    } else {
-        const auto triangles = static_cast<std::uint32_t>(plan.surface.triangles.size());
-        plan.patches = split_regions(
-            plan.surface, std::max(plan.regions.count, std::min({patches_per_region * plan.regions.count,
-                                                                 triangles / triangles_per_patch, kMostRegions})));
-    }
+    choose_patches(plan, shape);
 
     std::vector<Vec3d> first = distinct_directions(plan.symmetry, frequency);
     while (!options.directions && frequency < p.most_frequency) {

@@ -68,7 +68,7 @@ void fill_spin(Map& map, const BakePlan& plan, const std::vector<TaskResult>& re
             const FlowMeans means = means_of(results[k]);
             const double part = 1.0 / static_cast<double>(by.size());
             for (const Matrix3* g : by) {
-                const Transfer transfer(carrier.surface, carrier.patches, carrier.regions, plan.symmetry.centre, *g);
+                const Transfer transfer(carrier, *g);
                 for (const Transfer::Share& s : transfer.shares()) {
                     force[s.region].pressure += (*g * means.patch[s.patch].pressure) * (s.share * part);
                     force[s.region].friction += (*g * means.patch[s.patch].friction) * (s.share * part);

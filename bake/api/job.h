@@ -40,7 +40,7 @@ private:
     void note(const std::string& text);
 
     std::unique_ptr<BakePlan> plan_, first_;  ///< as extended by the work, and as it was planned
-    std::string work_;  ///< the folder above the store's
+    std::string work_;                        ///< the folder above the store's
     std::unique_ptr<Store> store_;
     std::vector<std::uint8_t> map_;
     std::thread thread_;

@@ -17,13 +17,12 @@ bool same(const Matrix3& a, const Matrix3& b) { return a.row == b.row; }
 
 }  // namespace
 
-RegionForces::RegionForces(const Carrier& carrier, std::vector<FlowMeans> means, const std::vector<Vec3d>& directions,
-                           double size, double spacing)
+RegionForces::RegionForces(const Carrier& carrier, const Symmetry& symmetry, std::vector<FlowMeans> means,
+                           const std::vector<Vec3d>& directions, double size, double spacing)
     : carrier_(carrier),
       means_(std::move(means)),
-      known_(carrier.symmetry, solved_directions(means_, directions, carrier.symmetry.centre), size, spacing) {
+      known_(symmetry, solved_directions(means_, directions, carrier.centre), size, spacing) {
     std::vector<FitSite> sites;
-    std::vector<FitValue> swings;
     for (std::uint32_t k = 0; k < means_.size(); ++k) {
         for (const Image& image : known_.images_of(k)) {
             std::vector<PatchForce> mean(carrier_.regions.count);
@@ -37,17 +36,17 @@ RegionForces::RegionForces(const Carrier& carrier, std::vector<FlowMeans> means,
             }
             site_means_.push_back(std::move(mean));
             sites.push_back({image.direction, k});
-            swings.push_back({means_[k].rms, 0, 0, 0, 0, 0});
         }
     }
-    rms_fit_ = std::make_unique<DirectionFit>(sites, choose_model(sites, swings));
+    // Of a record a few sheddings long the strength is known to some tenths: no fit of it can be chosen by how well it
+    // predicts. Each flow keeps its own.
+    rms_fit_ = std::make_unique<DirectionFit>(sites, FitModel{1, 1e-2});
 }
 
 const Transfer& RegionForces::transfer(const Matrix3& g) {
     for (const auto& known : transfers_)
         if (same(known->g(), g)) return *known;
-    transfers_.push_back(
-        std::make_unique<Transfer>(carrier_.surface, carrier_.patches, carrier_.regions, carrier_.symmetry.centre, g));
+    transfers_.push_back(std::make_unique<Transfer>(carrier_, g));
     return *transfers_.back();
 }
 

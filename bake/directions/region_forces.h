@@ -11,18 +11,11 @@
 
 namespace frm::bake {
 
-/// The body that flows are carried over on.
-struct Carrier {
-    const Surface& surface;
-    const Regions &patches, &regions;
-    const Symmetry& symmetry;
-};
-
 class RegionForces {
 public:
     /// `means[k]` and `directions[k]`: of one solved flow; all at one speed. `size`, `spacing`: see KnownForces.
-    RegionForces(const Carrier& carrier, std::vector<FlowMeans> means, const std::vector<Vec3d>& directions,
-                 double size, double spacing);
+    RegionForces(const Carrier& carrier, const Symmetry& symmetry, std::vector<FlowMeans> means,
+                 const std::vector<Vec3d>& directions, double size, double spacing);
 
     /// The mean force on each region in a stream of unit direction e.
     std::vector<PatchForce> mean(const Vec3d& e) const;

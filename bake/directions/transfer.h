@@ -1,15 +1,25 @@
-// How the forces on patches become those on regions where a flow is carried over by an isometry of the body.
+// How the forces on patches become those on regions where a flow is carried over by an isometry of the body. Regions are
+// not symmetric where the body is, so the image of a region's force is no region's force; a flow is recorded on patches.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "bake/directions/landing.h"
+#include "bake/math/matrix.h"
 #include "bake/mesh/surface.h"
-#include "bake/symmetry/symmetry.h"
 
 namespace frm::bake {
 
-/// The image of a patch covers parts of regions; each gets its share of the patch's force, by area.
+/// The body that flows are carried over on.
+struct Carrier {
+    const Surface& surface;
+    const Regions &patches, &regions;
+    Vec3d centre;  ///< of the isometries
+    const Landing& landing;
+};
+
+/// Each triangle of a patch gives its part of the patch's force, by area, to the region that its image lies on.
 class Transfer {
 public:
     struct Share {
@@ -18,8 +28,7 @@ public:
     };
 
     /// For the isometry x -> centre + g (x - centre).
-    Transfer(const Surface& surface, const Regions& patches, const Regions& regions, const Vec3d& centre,
-             const Matrix3& g);
+    Transfer(const Carrier& carrier, const Matrix3& g);
 
     const std::vector<Share>& shares() const { return shares_; }
     const Matrix3& g() const { return g_; }
@@ -28,5 +37,10 @@ private:
     Matrix3 g_;
     std::vector<Share> shares_;
 };
+
+/// The fewest patches each of which every element of a finite group carries into one region, so that carried regions
+/// are as exact as triangles are small. Numbered in the order of their first triangles.
+Regions patches_for(const Surface& surface, const Regions& regions, const std::vector<Matrix3>& elements,
+                    const Vec3d& centre, const Landing& landing);
 
 }  // namespace frm::bake

@@ -60,7 +60,7 @@ public:
             cast(c);
         }
         std::sort(hits_.begin(), hits_.end());
-        if (domain_.turning) drop_grazing();
+        drop_grazing();
         hits_.erase(
             std::unique(hits_.begin(), hits_.end(),
                         [](const Hit& a, const Hit& b) { return a.cell == b.cell && a.direction == b.direction; }),
@@ -73,9 +73,8 @@ public:
 
 private:
     /// A link that only touches an edge goes into the body and out of it at one place, or misses it, as the nudge has
-    /// it: on a box along the lattice that makes fins of half of its edges, and of a cube that turns the force that
-    /// should be none 15 % of torque over radius. In a stream they are kept (lift 4 % of a cube's drag): to be taken
-    /// out there too when maps are baked anew.
+    /// it: on a box along the lattice that makes fins of half of its edges. With them a cube face-on at Re 1e4 had a drag
+    /// of 1.02, 1.10, 1.085 at 16, 24, 32 cells, without 0.93, 1.01, 1.04.
     void drop_grazing() {
         std::size_t kept = 0;
         for (std::size_t n = 0; n < hits_.size();) {

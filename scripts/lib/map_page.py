@@ -77,7 +77,7 @@ def sizes_table(bakes):
     for made in bakes:
         size, limit = made["made"]["result"]["file_bytes"] / 1e3, made["bake"].kilobytes
         stated = made["info"]["quantisation_error"]
-        found = made["verified"].get("rounding_error", float("nan"))
+        found = made["verified"]["quantisation_error"]
         rows.append((made["bake"].name, f"{size:.0f} kB", f"{limit:.0f} kB: {verdict(size <= limit and stated < 0.01)}" if limit else "–",
                      percent(stated, 2), percent(found, 2), f"{made['raw_bytes'] / 1e3:.0f} kB"))
     return table(("map", "file", "asked", "stated error", "found against the raw tables", "raw tables, fp32 by zstd"), rows)

@@ -7,7 +7,6 @@
 #include "bake/directions/images.h"
 #include "bake/directions/known.h"
 #include "bake/directions/region_forces.h"
-#include "bake/directions/transfer.h"
 #include "bake/regions/regions.h"
 #include "bake/regions/tessellate.h"
 #include "core/map/directions.h"
@@ -165,46 +164,6 @@ TEST_CASE("bodies of revolution are solved along half a circle, spheres once", "
         }
 }
 
-TEST_CASE("forces that are carried over are all there, each where it belongs", "[directions]") {
-    const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
-    const Regions regions = split_regions(box, 12), patches = split_regions(box, 60);
-    const auto place = region_properties(box, regions), from = region_properties(box, patches);
-    const Symmetry symmetry = of_a_box();
-    for (const Matrix3& g : symmetry.elements) {
-        const Transfer transfer(box, patches, regions, symmetry.centre, g);
-        std::vector<double> sum(patches.count, 0.0);
-        for (const Transfer::Share& s : transfer.shares()) {
-            sum[s.patch] += s.share;
-            // A patch's image lies in the region, so it looks the same way.
-            CHECK(dot(g * from[s.patch].normal, place[s.region].normal) > 0.5);
-        }
-        for (const double share : sum) CHECK(share == Approx(1));
-    }
-}
-
-TEST_CASE("a patch is carried to where its triangles' images are", "[directions]") {
-    const Surface ball = tessellate(test::icosphere(0.1, 2), 0.02, 2000).surface;
-    const Regions regions = split_regions(ball, 12), patches = split_regions(ball, 60);
-    const Matrix3 g = rotation_about(Vec3d{2, 3, 6} / 7.0, 1.234);
-    std::vector<double> part(std::size_t{patches.count} * regions.count, 0.0), covered(patches.count, 0.0);
-    const auto middle = [&](std::size_t t) { return (ball.corner(t, 0) + ball.corner(t, 1) + ball.corner(t, 2)) / 3.0; };
-    for (std::size_t t = 0; t < ball.triangles.size(); ++t) {
-        std::size_t from = 0;  // the nearest, by looking at all
-        for (std::size_t k = 0; k < ball.triangles.size(); ++k)
-            if (length(g * middle(k) - middle(t)) < length(g * middle(from) - middle(t))) from = k;
-        const double area = length(cross(ball.corner(t, 1) - ball.corner(t, 0), ball.corner(t, 2) - ball.corner(t, 0)));
-        part[patches.region[from] * regions.count + regions.region[t]] += area;
-        covered[patches.region[from]] += area;
-    }
-    std::size_t found = 0;
-    const Transfer transfer(ball, patches, regions, {}, g);
-    for (const Transfer::Share& s : transfer.shares()) {
-        CHECK(s.share == Approx(part[s.patch * regions.count + s.region] / covered[s.patch]));
-        ++found;
-    }
-    CHECK(found == static_cast<std::size_t>(std::count_if(part.begin(), part.end(), [](double a) { return a > 0; })));
-}
-
 TEST_CASE("one flow alone tells nothing of its error, and asks for no other", "[directions]") {
     Symmetry round;
     round.kind = SymmetryKind::spherical;
@@ -244,7 +203,8 @@ TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'"
         means.push_back(means_of(flows.back()));
         directions.push_back(set.direction(d));
     }
-    const RegionForces forces({box, regions, regions, none}, means, directions, 0.2, spacing_of(1));
+    const Landing landing(box, 1e-4);
+    const RegionForces forces({box, regions, regions, {}, landing}, none, means, directions, 0.2, spacing_of(1));
     std::vector<const TaskResult*> results;
     for (const TaskResult& r : flows) results.push_back(&r);
     const FluctuationSpec spec{period, 32, 8, 0};

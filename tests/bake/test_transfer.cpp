@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "bake/directions/transfer.h"
+#include "bake/error.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
-#include "bake/regions/carry.h"
 #include "bake/regions/regions.h"
 #include "bake/regions/tessellate.h"
 #include "bake/symmetry/symmetry.h"
@@ -51,13 +51,15 @@ double error_of(const Surface& s, const Regions& regions, double* of_whole = nul
         homes.push_back(canonical(symmetry, d));
         elements.push_back(homes.back().element);
     }
-    const CarriedRegions carried = carry_regions(s, regions, elements, symmetry.centre, symmetry.tolerance);
+    const Landing landing(s, symmetry.tolerance);
+    const Regions patches = patches_for(s, regions, elements, symmetry.centre, landing);
     double difference = 0, all = 0;
     for (std::size_t i = 0; i < streams.size(); ++i) {
-        const std::vector<Vec3d> parts = forces(s, carried.parts, symmetry.centre, homes[i].direction);
+        const std::vector<Vec3d> on_patches = forces(s, patches, symmetry.centre, homes[i].direction);
         std::vector<Vec3d> result(regions.count);
-        for (std::uint32_t p = 0; p < carried.parts.count; ++p)
-            result[carried.region[i][p]] += homes[i].element * parts[p];
+        const Transfer transfer({s, patches, regions, symmetry.centre, landing}, elements[i]);
+        for (const Transfer::Share& part : transfer.shares())
+            result[part.region] += homes[i].element * on_patches[part.patch] * part.share;
         const std::vector<Vec3d> expected = forces(s, regions, symmetry.centre, streams[i] / length(streams[i]));
         Vec3d whole, whole_expected;
         for (std::uint32_t l = 0; l < regions.count; ++l) {
@@ -73,7 +75,7 @@ double error_of(const Surface& s, const Regions& regions, double* of_whole = nul
 
 }  // namespace
 
-TEST_CASE("carried forces of regions are those of the direction", "[carry]") {
+TEST_CASE("carried forces of regions are those of the direction", "[transfer]") {
     for (const char* name : {"paddle.glb", "plate.glb", "canoe.glb", "box.glb", "sphere.glb"}) {
         const Surface s = sample_triangles(sample(name));
         double whole = 0;
@@ -91,38 +93,48 @@ TEST_CASE("carried forces of regions are those of the direction", "[carry]") {
     CHECK(error_of(fine, split_regions(fine, 20)) < 0.5 * coarse);
 }
 
-TEST_CASE("parts are of one region each, and all go somewhere", "[carry]") {
+TEST_CASE("patches are carried whole, and all go somewhere", "[transfer]") {
     const Surface s = sample_triangles(sample("plate.glb"));
     const Regions regions = split_regions(s, 24);
     const Symmetry symmetry = find_symmetry(s);
     REQUIRE(symmetry.elements.size() == 8);
-    const CarriedRegions all = carry_regions(s, regions, symmetry.elements, symmetry.centre, symmetry.tolerance);
-    CHECK(all.parts.region.size() == s.triangles.size());
-    CHECK(all.parts.count <= s.triangles.size());
-    CHECK(all.parts.count > regions.count);
-    for (std::size_t t = 0; t < s.triangles.size(); ++t)
-        CHECK(all.region[0][all.parts.region[t]] == regions.region[t]);  // the identity comes first
+    const Landing landing(s, symmetry.tolerance);
+    const Regions patches = patches_for(s, regions, symmetry.elements, symmetry.centre, landing);
+    CHECK(patches.region.size() == s.triangles.size());
+    CHECK(patches.count > regions.count);
+    const Carrier carrier{s, patches, regions, symmetry.centre, landing};
+    for (const Matrix3& g : symmetry.elements) {
+        const Transfer transfer(carrier, g);
+        CHECK(transfer.shares().size() == patches.count);
+        for (const Transfer::Share& part : transfer.shares()) CHECK(part.share == Approx(1));
+    }
+    // Of patches that were not made for it a part goes to each of several regions; none is lost.
+    const Regions others = split_regions(s, 60);
+    std::vector<double> sum(others.count, 0.0);
+    const Transfer shared({s, others, regions, symmetry.centre, landing}, symmetry.elements[1]);
+    for (const Transfer::Share& part : shared.shares()) sum[part.patch] += part.share;
+    for (const double whole : sum) CHECK(whole == Approx(1));
 
-    // By the identity alone the parts are the regions.
-    const CarriedRegions same = carry_regions(s, regions, {Matrix3{}}, symmetry.centre, symmetry.tolerance);
-    CHECK(same.parts.count == regions.count);
-    CHECK(same.parts.region == regions.region);
-    CHECK_THROWS_AS(carry_regions(s, {{0, 1}, 2}, {Matrix3{}}, symmetry.centre, 1), BakeError);
+    // By the identity alone the patches are the regions.
+    const Regions same = patches_for(s, regions, {Matrix3{}}, symmetry.centre, landing);
+    CHECK(same.count == regions.count);
+    CHECK(same.region == regions.region);
+    CHECK_THROWS_AS(patches_for(s, {{0, 1}, 2}, {Matrix3{}}, symmetry.centre, landing), BakeError);
+    CHECK_THROWS_AS(Landing(s, 0), BakeError);
 }
 
-TEST_CASE("the sides of a blade thinner than the tolerance are not mixed up", "[carry]") {
+TEST_CASE("the sides of a blade thinner than the tolerance are not mixed up", "[transfer]") {
     const Surface s = sample_triangles(test::box({1, 0.6, 0.002}), 1000);
     Regions sides{{}, 3};
     for (std::size_t t = 0; t < s.triangles.size(); ++t) {
         const double n = cross(s.corner(t, 1) - s.corner(t, 0), s.corner(t, 2) - s.corner(t, 0)).z;
         sides.region.push_back(std::fabs(n) < 1e-9 ? 2 : n > 0 ? 0 : 1);
     }
-    const CarriedRegions carried =
-        carry_regions(s, sides, {mirror_across({1, 0, 0}), mirror_across({0, 0, 1})}, {}, 0.005);
-    REQUIRE(carried.parts.count == 3);
-    for (std::size_t t = 0; t < s.triangles.size(); ++t) {
-        const std::uint32_t p = carried.parts.region[t], side = sides.region[t];
-        CHECK(carried.region[0][p] == side);
-        CHECK(carried.region[1][p] == (side == 2 ? 2 : 1 - side));
+    const Landing landing(s, 0.005);
+    for (const Vec3d& normal : {Vec3d{1, 0, 0}, Vec3d{0, 0, 1}}) {
+        const Transfer transfer({s, sides, sides, {}, landing}, mirror_across(normal));
+        REQUIRE(transfer.shares().size() == 3);
+        for (const Transfer::Share& part : transfer.shares())
+            CHECK(part.region == (normal.z == 0 || part.patch == 2 ? part.patch : 1 - part.patch));
     }
 }
