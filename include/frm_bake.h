@@ -76,13 +76,13 @@ typedef struct frm_bake_def {
     uint32_t added_mass;  /* 0: the map has none; default 1 */
     uint32_t symmetry;    /* 0: solve every direction, whatever symmetry the mesh has; default 1 */
     double resolution;    /* grid cells across the object, 4 to 512; default 0: by quality */
-    uint32_t directions;  /* exactly so many, before symmetry: 6, 18, 38, 66, 102, ... 1026; default 0: by quality, and
-                             more where the force bends */
+    uint32_t directions;  /* exactly so many, before symmetry: 6, 18, 38, 66, 102, ... 1026; default 0: by quality,
+                             and more where the force bends */
     uint32_t sources;     /* 1 to 4096; default 0: by their error */
     uint32_t triangles;   /* sample triangles at most, 4 to 2097152; default 0: 2000 */
     uint32_t threads;     /* 1 to 256; default 0: as many as OpenMP gives */
-    double threshold;     /* harmonics of the fluctuation below this share of the largest mean force are dropped, 0 to 1;
-                             default 2e-4 */
+    double threshold;     /* harmonics of the fluctuation below this share of the largest mean force are dropped, 0 to
+                             1; default 2e-4 */
 } frm_bake_def;
 
 typedef struct frm_bake_plan_info {
@@ -93,8 +93,8 @@ typedef struct frm_bake_plan_info {
     uint32_t directions; /* that the map stores means for */
     uint32_t sources;
     uint32_t triangles;
-    uint32_t isometries; /* that carry the object into itself and are made use of; 1: it has no symmetry, 0: infinitely
-                            many, as of a cylinder or a sphere */
+    uint32_t isometries; /* that carry the object into itself and are made use of; 1: it has no symmetry, 0:
+                            infinitely many, as of a cylinder or a sphere */
     double updates;      /* cell updates of `flows`; a core does some 1e8 a second */
     uint64_t flow_bytes; /* memory of a flow; several run at a time */
     double extent;       /* longest side of the object, after scale, m: what is not between 5 mm and 20 m was probably
@@ -111,7 +111,8 @@ typedef struct frm_bake_progress {
     uint32_t flows_done;
     float drag;           /* running mean drag coefficient of the flow named; 0 while it starts */
     float uncertainty;    /* its standard error, as a share; 0 while not known */
-    char flow[64];        /* its name, such as "direction 0.71 0.00 -0.71"; empty while other processes have what is left */
+    char flow[64];        /* its name, such as "direction 0.71 0.00 -0.71"; empty while other processes have what is
+                             left */
 } frm_bake_progress;
 
 /* The version of the library that runs. Each pointer may be null. [any] */
