@@ -102,11 +102,11 @@ def spin_table(rows):
     return table(("axis", "direct run", "map with spins", "paper's rule", "run's own uncertainty", f"within {SPIN_PERCENT} %"), out)
 
 
-def page(bakes, speeds, spin, commit, machine, missing):
+def page(bakes, speeds, spin, commit, machine, versions, missing):
     parts = [f"""# Maps against direct runs
 
-Written by `scripts/validate-map` ({datetime.date.today():%Y-%m-%d}, commit {commit}, {machine}); how maps are made is in
-[bake.md](bake.md). Errors of a force are shares of the largest mean force that the map has over its solved directions."""]
+Written by `scripts/validate-map` ({datetime.date.today():%Y-%m-%d}, commit {commit}, {machine}; program, by the first
+digits of its SHA-256: {", ".join(version[:8] for version in versions)}); how maps are made is in [bake.md](bake.md). Errors of a force are shares of the largest mean force that the map has over its solved directions."""]
     if missing:
         parts.append(f"Not run: {len(missing)} steps, among them {', '.join(missing[:4])}.")
     if bakes:
