@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/kernels/kernels.h"
+
 namespace frm {
 namespace {
 
@@ -54,20 +56,21 @@ void Field::step(float dt, float gravity, std::uint32_t threads) {
 // At an open border the outermost face moves as a wave that leaves does: u = h sqrt(g / d) (Flather 1976).
 void Field::step_velocities(float factor, float outflow, std::uint32_t threads) {
     const std::int32_t nx = def_.nx, ny = def_.ny;
+    const Kernels& row = kernels();
     [[maybe_unused]] const bool parallel = threads > 1 && cells() >= threaded_cells;
 #pragma omp parallel for schedule(static) num_threads(static_cast <int>(threads)) if (parallel)
     for (std::int32_t j = 0; j < ny; ++j) {
         const float* h = height_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
         float* u = u_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx + 1);
         u[0] = -outflow * h[0];
-        for (std::int32_t i = 1; i < nx; ++i) u[i] -= factor * (h[i] - h[i - 1]);
+        row.wave_velocity_row(u + 1, h + 1, 1, nx - 1, factor);
         u[nx] = outflow * h[nx - 1];
 
         float* v = v_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
         if (j == 0) {
             for (std::int32_t i = 0; i < nx; ++i) v[i] = -outflow * h[i];
         } else {
-            for (std::int32_t i = 0; i < nx; ++i) v[i] -= factor * (h[i] - h[i - nx]);
+            row.wave_velocity_row(v, h, nx, nx, factor);
         }
         if (j == ny - 1)
             for (std::int32_t i = 0; i < nx; ++i) v[nx + i] = outflow * h[i];
@@ -76,13 +79,14 @@ void Field::step_velocities(float factor, float outflow, std::uint32_t threads) 
 
 void Field::step_heights(float factor, std::uint32_t threads) {
     const std::int32_t nx = def_.nx, ny = def_.ny;
+    const Kernels& row = kernels();
     [[maybe_unused]] const bool parallel = threads > 1 && cells() >= threaded_cells;
 #pragma omp parallel for schedule(static) num_threads(static_cast <int>(threads)) if (parallel)
     for (std::int32_t j = 0; j < ny; ++j) {
         float* h = height_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
         const float* u = u_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx + 1);
         const float* v = v_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
-        for (std::int32_t i = 0; i < nx; ++i) h[i] -= factor * ((u[i + 1] - u[i]) + (v[nx + i] - v[i]));
+        row.wave_height_row(h, u, v, v + nx, nx, factor);
     }
 }
 

@@ -1,0 +1,2 @@
+#define FRM_KERNEL_SET avx512
+#include "core/kernels/set.inl"

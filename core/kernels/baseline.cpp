@@ -1,0 +1,2 @@
+#define FRM_KERNEL_SET baseline
+#include "core/kernels/set.inl"

@@ -1,0 +1,18 @@
+// All kernels, for one instruction set: included once by each file that is compiled for one, which defines
+// FRM_KERNEL_SET, the set's name. Everything here lives in a namespace of that name and includes no header with inline
+// functions: the linker would keep one copy of those, perhaps one that this machine cannot run.
+#include "core/kernels/kernels.h"
+
+namespace frm::FRM_KERNEL_SET {
+#include "core/kernels/wave_rows.inl"
+
+#define FRM_KERNEL_TEXT(name) #name
+#define FRM_KERNEL_NAME(name) FRM_KERNEL_TEXT(name)
+
+extern const Kernels kernels;
+const Kernels kernels{
+    FRM_KERNEL_NAME(FRM_KERNEL_SET),
+    wave_velocity_row,
+    wave_height_row,
+};
+}  // namespace frm::FRM_KERNEL_SET
