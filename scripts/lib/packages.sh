@@ -6,6 +6,9 @@ packages_build=(g++ cmake ninja-build pkg-config libzstd-dev libtinygltf-dev lib
     nlohmann-json3-dev python3 python3-matplotlib python3-numpy)
 # shellcheck disable=SC2034
 packages_test=(catch2 python3-pytest)
+# Not in every release; what needs one is left out without it (libmujoco-dev: a peer in `frm bench`).
+# shellcheck disable=SC2034
+packages_optional=(libmujoco-dev)
 # shellcheck disable=SC2034
 packages_full=(slurm-wlm munge openmpi-bin)
 
@@ -74,4 +77,17 @@ install_packages() {
     say "installing: ${missing[*]}"
     apt_retry update || die "apt-get update failed"
     apt_retry install -y --no-install-recommends "${missing[@]}" || die "apt-get install failed for: ${missing[*]}"
+}
+
+# What can be had of these; nothing ends if that is none.
+install_optional_packages() {
+    local package
+    command -v apt-get >/dev/null && command -v dpkg-query >/dev/null || return 0
+    for package in "$@"; do
+        package_installed "$package" && continue
+        apt-cache show "$package" >/dev/null 2>&1 || apt_retry update || true
+        say "installing, if it can be had: $package"
+        apt-cache show "$package" >/dev/null 2>&1 && apt_retry install -y --no-install-recommends "$package" ||
+            say "going on without $package"
+    done
 }

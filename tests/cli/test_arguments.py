@@ -17,7 +17,7 @@ OPTIONS = {
     "force": ["FILE", "--velocity", "--spin", "--seconds", "--json"],
     "run": ["SCENE", "--map", "--record", "--report", "--csv", "--seconds", "--json"],
     "replay": ["FILE", "--json"],
-    "bench": ["--seconds", "--json"],
+    "bench": ["--seconds", "--full", "--json"],
 }
 FLOW = ["flow", "a.glb", "--direction", "1,0,0", "--speed", "1"]
 

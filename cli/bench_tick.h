@@ -1,0 +1,26 @@
+// What whole ticks cost, through the C interface, on one core.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cli/tick_times.h"
+
+namespace frm::cli {
+
+/// A thin box of 0.2 x 0.02 x 0.6 m, tessellated as the paper's paddle is, with a map made from a formula: a map file.
+std::vector<std::uint8_t> bench_map(std::uint32_t sources, std::uint32_t triangles);
+
+struct TickScene {
+    std::uint32_t cells = 200;  ///< along each side of the water; 0: a flat surface
+    std::uint32_t bodies = 1;   ///< half in the water, moving and turning
+    std::uint32_t dry = 0;      ///< more bodies, 10 m above it
+    double height = 0;          ///< of the bodies' origin, m
+    bool moving = true;         ///< else they rest
+};
+
+/// Ticks of 2 ms: `ticks` of them, or as many as there is time for in `seconds`, whichever comes first.
+TickTimes measure_ticks(const std::vector<std::uint8_t>& map_file, const TickScene& scene, double seconds,
+                        std::size_t ticks = SIZE_MAX);
+
+}  // namespace frm::cli
