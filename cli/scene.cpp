@@ -12,7 +12,8 @@ namespace {
 using Json = nlohmann::json;
 
 frm_world_def read_world(const JsonReader& j) {
-    j.allow_only({"model", "surface", "gravity", "density", "viscosity", "level"});
+    j.allow_only(
+        {"model", "surface", "gravity", "density", "viscosity", "level", "skip", "error_budget", "time_budget"});
     frm_world_def def;
     frm_world_def_init(&def, sizeof def);
     j.choose("model", def.model,
@@ -28,11 +29,14 @@ frm_world_def read_world(const JsonReader& j) {
     j.read("density", def.density);
     j.read("viscosity", def.viscosity);
     j.read("level", def.level);
+    j.choose("skip", def.skip, {{"all", FRM_SKIP_DEFAULT}, {"nothing", FRM_SKIP_NOTHING}});
+    j.read("error_budget", def.error_budget);
+    j.read("time_budget", def.time_budget);
     return def;
 }
 
 frm_water_def read_water(const JsonReader& j) {
-    j.allow_only({"nx", "ny", "cell", "depth", "border", "border_cells", "snapshot_interval", "centre"});
+    j.allow_only({"nx", "ny", "cell", "depth", "border", "border_cells", "snapshot_interval", "centre", "order"});
     frm_water_def def;
     frm_water_def_init(&def, sizeof def);
     j.read("nx", def.nx);
@@ -42,6 +46,7 @@ frm_water_def read_water(const JsonReader& j) {
     j.choose("border", def.border, {{"absorbing", FRM_BORDER_ABSORBING}, {"reflecting", FRM_BORDER_REFLECTING}});
     j.read("border_cells", def.border_cells);
     j.read("snapshot_interval", def.snapshot_interval);
+    j.read("order", def.order);
     double centre[2] = {def.centre_x, def.centre_y};
     j.read("centre", centre);
     def.centre_x = centre[0];

@@ -16,7 +16,7 @@
 namespace frm::device {
 
 constexpr std::uint8_t recording_magic[8] = {0x89, 'F', 'R', 'R', '\r', '\n', 0x1A, '\n'};
-constexpr std::uint32_t recording_version = 1;
+constexpr std::uint32_t recording_version = 2;
 constexpr std::uint32_t block_mark = 0x4B4C4246;  // "FBLK"
 
 enum class EventType : std::uint8_t {
@@ -135,6 +135,7 @@ private:
     std::vector<std::uint8_t> file_, raw_;
     std::size_t at_file_ = 0, at_raw_ = 0, blocks_ = 0;
     bool torn_ = false, ended_ = false;
+    std::uint32_t version_ = 0;
 };
 
 }  // namespace frm::device

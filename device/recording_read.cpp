@@ -60,14 +60,18 @@ std::vector<float> read_values(ByteReader& r) {
     return values;
 }
 
-event::World read_world(ByteReader& r) {
+event::World read_world(ByteReader& r, std::uint32_t version) {
     event::World e;
     e.def.model = r.u32(), e.def.everywhere = r.u32() != 0, e.def.level = r.f64();
     e.def.fluid.gravity = r.f32(), e.def.fluid.density = r.f32(), e.def.fluid.viscosity = r.f32();
     e.hash_interval = r.u32(), e.axes = r.u32();
+    e.def.skip = skip_nothing;  // there were no such rules in version 1
+    if (version > 1) e.def.skip = r.u32(), e.def.error_budget = r.f32(), e.def.time_budget = r.f32();
     require(e.def.model <= FRM_MODEL_DEFAULT && within(e.def.level, -1e9, 1e9) &&
                 within(e.def.fluid.gravity, 0, 1000) && within(e.def.fluid.density, 1e-3f, 1e5) &&
-                within(e.def.fluid.viscosity, 1e-9f, 1e2) && e.axes <= FRM_AXES_Z_UP_LEFT,
+                within(e.def.fluid.viscosity, 1e-9f, 1e2) && e.axes <= FRM_AXES_Z_UP_LEFT &&
+                e.def.skip <= FRM_SKIP_DEFAULT && within(e.def.error_budget, 0, 1e9) &&
+                within(e.def.time_budget, 0, 1e6),
             "the world's definition");
     return e;
 }
@@ -79,19 +83,20 @@ event::Map read_map(ByteReader& r) {
     return {{bytes, bytes + size}};
 }
 
-event::Water read_water(ByteReader& r) {
+event::Water read_water(ByteReader& r, std::uint32_t version) {
     event::Water e;
     FieldDef& f = e.def.field;
     f.nx = static_cast<std::int32_t>(r.u32()), f.ny = static_cast<std::int32_t>(r.u32()), f.cell = r.f32(),
     f.depth = r.f32();
     f.border = r.u32() ? Border::reflecting : Border::absorbing, f.border_cells = static_cast<std::int32_t>(r.u32());
     e.def.centre_x = r.f64(), e.def.centre_y = r.f64(), e.def.snapshot_interval = r.f32();
+    if (version > 1) f.order = static_cast<std::int32_t>(r.u32());
     // The absorbing layer must fit: Field::damp counts on it.
     const bool layer = f.border == Border::reflecting || (3 * f.border_cells < f.nx && 3 * f.border_cells < f.ny);
     require(f.nx >= 8 && f.nx <= 8192 && f.ny >= 8 && f.ny <= 8192 && f.border_cells >= 0 && f.border_cells <= 64 &&
                 layer && within(f.cell, 1e-4f, 1e3) && within(f.depth, 1e-3f, 1e4) &&
                 within(e.def.centre_x, -1e9, 1e9) && within(e.def.centre_y, -1e9, 1e9) &&
-                within(e.def.snapshot_interval, 0, 10),
+                within(e.def.snapshot_interval, 0, 10) && (f.order == 2 || f.order == 4),
             "the water's size");
     return e;
 }
@@ -146,15 +151,15 @@ event::Exchange read_exchange(ByteReader& r) {
     return e;
 }
 
-Event read_event(ByteReader& r) {
+Event read_event(ByteReader& r, std::uint32_t version) {
     const std::uint8_t type = r.u8();
     switch (static_cast<EventType>(type)) {
         case EventType::world:
-            return read_world(r);
+            return read_world(r, version);
         case EventType::map:
             return read_map(r);
         case EventType::water:
-            return read_water(r);
+            return read_water(r, version);
         case EventType::water_end:
             return event::WaterEnd{};
         case EventType::height:
@@ -196,9 +201,9 @@ RecordingReader::RecordingReader(const char* path) : path_(path) {
     ByteReader r(file_.data(), file_.size(), path);
     if (file_.size() < file_header_bytes || std::memcmp(r.take(8), recording_magic, 8) != 0)
         throw Error(FRM_ERROR_CORRUPT, "%s: this is not a recording (its first bytes are not the format's)", path);
-    const std::uint32_t version = r.u32();
-    if (version != recording_version)
-        throw Error(FRM_ERROR_VERSION, "%s: recording version %u; this library reads version %u", path, version,
+    version_ = r.u32();
+    if (version_ < 1 || version_ > recording_version)
+        throw Error(FRM_ERROR_VERSION, "%s: recording version %u; this library reads versions 1 to %u", path, version_,
                     recording_version);
     if (r.u32() != 0) throw Error(FRM_ERROR_VERSION, "%s: the header has flags that this library does not know", path);
     rewind();
@@ -245,7 +250,7 @@ bool RecordingReader::next(Event& event) {
     }
     ByteReader r(raw_.data() + at_raw_, raw_.size() - at_raw_, "an event");
     try {
-        event = read_event(r);
+        event = read_event(r, version_);
     } catch (const Error& error) {
         throw Error(error.status(), "%s: block %zu: %s", path_.c_str(), blocks_ - 1, error.text());
     }

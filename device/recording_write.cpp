@@ -34,6 +34,7 @@ struct Encode {
         w.u32(e.def.model), w.u32(e.def.everywhere), w.f64(e.def.level);
         w.f32(e.def.fluid.gravity), w.f32(e.def.fluid.density), w.f32(e.def.fluid.viscosity);
         w.u32(e.hash_interval), w.u32(e.axes);
+        w.u32(e.def.skip), w.f32(e.def.error_budget), w.f32(e.def.time_budget);
     }
     void operator()(const event::Map& e) const {
         type(EventType::map);
@@ -46,6 +47,7 @@ struct Encode {
         w.u32(static_cast<std::uint32_t>(f.nx)), w.u32(static_cast<std::uint32_t>(f.ny)), w.f32(f.cell), w.f32(f.depth);
         w.u32(f.border == Border::reflecting), w.u32(static_cast<std::uint32_t>(f.border_cells));
         w.f64(e.def.centre_x), w.f64(e.def.centre_y), w.f32(e.def.snapshot_interval);
+        w.u32(static_cast<std::uint32_t>(f.order));
     }
     void operator()(const event::WaterEnd&) const { type(EventType::water_end); }
     void operator()(const event::Height& e) const { type(EventType::height), put(w, e.values); }

@@ -300,6 +300,29 @@ typedef enum frm_model {
     FRM_MODEL_DEFAULT = 31
 } frm_model;
 
+/* What a tick leaves out where it does not count. Each bit switches one rule on; with the rule on or off forces and
+ * heights agree within the bound given. frm_world_stats counts how often each applied. */
+typedef enum frm_skip {
+    FRM_SKIP_NOTHING = 0,
+    /* Friction of a body that is negligible beside its pressure. */
+    FRM_SKIP_FRICTION = 1,
+    /* The fluctuation of sources that hardly fluctuate: their mean alone. */
+    FRM_SKIP_STEADY = 2,
+    /* All of a body that no wave can reach. */
+    FRM_SKIP_DRY_BODIES = 4,
+    /* The clip of a wholly wet body or part of one: closed-form moments instead. */
+    FRM_SKIP_WET_BODIES = 8,
+    /* Waves where the water is calm, in tiles of 32 x 32 cells. */
+    FRM_SKIP_CALM_WATER = 16,
+    /* Wave steps far below the stable step: several ticks share one. */
+    FRM_SKIP_WAVE_STEPS = 32,
+    /* What a body does to the water when it is too deep to be seen at the surface. */
+    FRM_SKIP_DEEP_BODIES = 64,
+    /* The displaced volume of a body that has hardly moved since it was last laid out. */
+    FRM_SKIP_STILL_BODIES = 128,
+    FRM_SKIP_DEFAULT = 255
+} frm_skip;
+
 /* Where the fluid ends, for a world without frm_water. */
 typedef enum frm_surface {
     FRM_SURFACE_FLAT = 0, /* fluid below `level`, nothing above */
@@ -314,6 +337,13 @@ typedef struct frm_world_def {
     float density;     /* of the fluid, 1e-3 to 1e5 kg/m^3; default 1000 */
     float viscosity;   /* kinematic, 1e-9 to 1e2 m^2/s; default 1e-6 */
     double level;      /* height of the calm surface, m; default 0 */
+    uint32_t skip;     /* frm_skip; default FRM_SKIP_DEFAULT */
+    float error_budget; /* N, 0 to 1e9: what a body's resistance may be off for the sake of speed. The coarsest clusters
+                           of sources are looked up whose bound is within it. Default 0: every source */
+    float time_budget; /* us, 0 to 1e6: what the resistance of all bodies may take, by a fixed price a lookup (so that
+                          the bits are the same anywhere). Clusters are made coarser until it is met, whatever the error.
+                          Default 0: as long as it takes */
+    uint32_t reserved;
 } frm_world_def;
 
 typedef struct frm_world_stats {
@@ -325,6 +355,16 @@ typedef struct frm_world_stats {
     uint32_t wet_sources;      /* in the last tick: sources with wet ratio > 0 */
     uint32_t clipped_triangles; /* in the last tick: triangles cut by the surface */
     uint32_t water_substeps;   /* in the last tick */
+    /* What was left out in the last tick, by frm_skip: */
+    uint32_t dry_bodies;       /* not looked at, no wave could reach them */
+    uint32_t whole_bodies;     /* wholly wet, by one evaluation */
+    uint32_t still_bodies;     /* whose displaced volume was kept */
+    uint32_t deep_bodies;      /* too deep to push the water */
+    uint32_t coarse_bodies;    /* by clusters of sources, within a budget */
+    uint32_t frictionless_sources; /* wet sources without friction */
+    uint32_t steady_sources;   /* wet sources by their mean alone */
+    uint32_t active_cells;     /* of the water that were stepped; all others are calm */
+    uint64_t water_waits;      /* ticks since the beginning in which the water was not stepped, but later */
 } frm_world_stats;
 
 /* Fills a def with defaults; writes at most `size` bytes. [any] */
@@ -376,6 +416,8 @@ typedef struct frm_water_def {
     float snapshot_interval; /* seconds between snapshots, 0 (every tick) to 10; default 1/60 */
     double centre_x;      /* of the field, on the first horizontal axis, m; default 0 */
     double centre_y;      /* on the second; default 0 */
+    uint32_t order;       /* of the differences in space, 2 or 4; default 2 */
+    uint32_t reserved;
 } frm_water_def;
 
 /* A view of the field. The library fills nx, ny, tick and time, and copies into each array that is not null. */

@@ -16,6 +16,7 @@ frm_water_def default_water() {
     def.cell = 0.025f;
     def.depth = 0.5f;
     def.snapshot_interval = 1.0f / 60;
+    def.order = 2;
     return def;
 }
 
@@ -33,13 +34,16 @@ WaterDef checked(const frm_water_def& d) {
     require_range(static_cast<double>(d.snapshot_interval), 0, 10, "def.snapshot_interval");
     require_range(d.centre_x, -1e9, 1e9, "def.centre_x");
     require_range(d.centre_y, -1e9, 1e9, "def.centre_y");
+    if (d.order != 2 && d.order != 4) throw Error(FRM_ERROR_ARGUMENT, "def.order = %u is neither 2 nor 4", d.order);
+    if (d.reserved != 0) throw Error(FRM_ERROR_ARGUMENT, "def.reserved is not 0");
     WaterDef def;
     def.field = {static_cast<std::int32_t>(d.nx),
                  static_cast<std::int32_t>(d.ny),
                  d.cell,
                  d.depth,
                  d.border == FRM_BORDER_ABSORBING ? Border::absorbing : Border::reflecting,
-                 static_cast<std::int32_t>(d.border_cells)};
+                 static_cast<std::int32_t>(d.border_cells),
+                 static_cast<std::int32_t>(d.order)};
     def.centre_x = d.centre_x;
     def.centre_y = d.centre_y;
     def.snapshot_interval = d.snapshot_interval;
@@ -118,6 +122,7 @@ frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def* def) {
         out.cell = d.field.cell;
         out.depth = d.field.depth;
         out.snapshot_interval = d.snapshot_interval;
+        out.order = static_cast<std::uint32_t>(d.field.order);
         out.centre_x = d.centre_x;
         out.centre_y = d.centre_y;
         write_struct(def, out);

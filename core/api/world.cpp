@@ -19,6 +19,7 @@ frm_world_def default_world() {
     def.density = defaults.fluid.density;
     def.viscosity = defaults.fluid.viscosity;
     def.level = defaults.level;
+    def.skip = FRM_SKIP_DEFAULT;
     return def;
 }
 
@@ -30,7 +31,15 @@ WorldDef checked(const frm_world_def& d) {
     require_range(static_cast<double>(d.density), 1e-3f, 1e5, "def.density");
     require_range(static_cast<double>(d.viscosity), 1e-9f, 1e2, "def.viscosity");
     require_range(d.level, -1e9, 1e9, "def.level");
-    return {d.model, d.surface == FRM_SURFACE_NONE, d.level, {d.gravity, d.density, d.viscosity}};
+    if (d.skip > FRM_SKIP_DEFAULT) throw Error(FRM_ERROR_ARGUMENT, "def.skip = %u is not a sum of frm_skip", d.skip);
+    require_range(static_cast<double>(d.error_budget), 0, 1e9, "def.error_budget");
+    require_range(static_cast<double>(d.time_budget), 0, 1e6, "def.time_budget");
+    if (d.reserved != 0) throw Error(FRM_ERROR_ARGUMENT, "def.reserved is not 0");
+    WorldDef out{d.model, d.surface == FRM_SURFACE_NONE, d.level, {d.gravity, d.density, d.viscosity}};
+    out.skip = d.skip;
+    out.error_budget = d.error_budget;
+    out.time_budget = d.time_budget;
+    return out;
 }
 
 }  // namespace
@@ -62,6 +71,9 @@ frm_status FRM_CALL frm_world_get_def(frm_world world, frm_world_def* def) {
         out.density = d.fluid.density;
         out.viscosity = d.fluid.viscosity;
         out.level = d.level;
+        out.skip = d.skip;
+        out.error_budget = d.error_budget;
+        out.time_budget = d.time_budget;
         write_struct(def, out);
     });
 }

@@ -46,6 +46,7 @@ struct FieldDef {
     float depth = 0;  ///< m
     Border border = Border::absorbing;
     std::int32_t border_cells = 0;
+    std::int32_t order = 2;  ///< of the differences in space: 2 or 4
 };
 
 class Field {

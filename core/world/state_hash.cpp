@@ -12,6 +12,7 @@ void hash_water(StateHash& hash, const Water& water) {
     hash.value(f.depth);
     hash.value(static_cast<std::uint32_t>(f.border));
     hash.value(f.border_cells);
+    hash.value(f.order);
     hash.value(water.def().centre_x);
     hash.value(water.def().centre_y);
     water.field.hash(hash);
@@ -40,6 +41,9 @@ std::uint64_t World::hash() const {
     hash.value(static_cast<std::uint32_t>(def_.everywhere));
     hash.value(def_.level);
     hash.value(def_.fluid);
+    hash.value(def_.skip);
+    hash.value(def_.error_budget);
+    hash.value(def_.time_budget);
     hash.value(ticks_);
     hash.value(time_);
     if (water_) hash_water(hash, *water_);

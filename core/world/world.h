@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/body/body.h"
+#include "core/skip.h"
 #include "core/water/water.h"
 
 namespace frm {
@@ -16,6 +17,9 @@ struct WorldDef {
     bool everywhere = false;  ///< fluid without a surface
     double level = 0;         ///< of the calm surface, m
     Fluid fluid;
+    std::uint32_t skip = skip_default;
+    float error_budget = 0;  ///< N, of a body; 0: exact
+    float time_budget = 0;   ///< us, of all bodies' resistance; 0: none
 };
 
 class World;

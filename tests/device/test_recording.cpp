@@ -274,3 +274,18 @@ TEST_CASE("a replay's world can be looked at and not changed", "[recording]") {
     CHECK(frm_world_tick(world, 0.002f) == FRM_ERROR_HANDLE);
     CHECK(frm_map_close(map) == FRM_ERROR_HANDLE);
 }
+
+TEST_CASE("a recording of version 1 is read: without rules of what to skip, and second order waves", "[recording]") {
+    device::RecordingReader reader((std::string(FRM_TEST_DATA) + "/v1.frmrec").c_str());
+    device::Event event;
+    std::uint64_t ticks = 0;
+    bool ended = false;
+    while (reader.next(event)) {
+        if (const auto* world = std::get_if<device::event::World>(&event)) CHECK(world->def.skip == skip_nothing);
+        if (const auto* water = std::get_if<device::event::Water>(&event)) CHECK(water->def.field.order == 2);
+        ticks += std::holds_alternative<device::event::Tick>(event);
+        if (const auto* end = std::get_if<device::event::End>(&event)) ended = end->ticks == ticks;
+    }
+    CHECK(ended);
+    CHECK_FALSE(reader.torn());
+}

@@ -174,6 +174,19 @@ class Model(IntEnum):
     MODEL_DEFAULT = 31
 
 
+class Skip(IntEnum):
+    SKIP_NOTHING = 0
+    SKIP_FRICTION = 1
+    SKIP_STEADY = 2
+    SKIP_DRY_BODIES = 4
+    SKIP_WET_BODIES = 8
+    SKIP_CALM_WATER = 16
+    SKIP_WAVE_STEPS = 32
+    SKIP_DEEP_BODIES = 64
+    SKIP_STILL_BODIES = 128
+    SKIP_DEFAULT = 255
+
+
 class Surface(IntEnum):
     SURFACE_FLAT = 0
     SURFACE_NONE = 1
@@ -181,13 +194,17 @@ class Surface(IntEnum):
 
 class WorldDef(Struct):
     _fields_ = [("struct_size", c_uint32), ("model", c_uint32), ("surface", c_uint32), ("gravity", c_float),
-                ("density", c_float), ("viscosity", c_float), ("level", c_double)]
+                ("density", c_float), ("viscosity", c_float), ("level", c_double), ("skip", c_uint32),
+                ("error_budget", c_float), ("time_budget", c_float), ("reserved", c_uint32)]
 
 
 class WorldStats(Struct):
     _fields_ = [("struct_size", c_uint32), ("bodies", c_uint32), ("ticks", c_uint64), ("time", c_double),
                 ("wet_bodies", c_uint32), ("wet_sources", c_uint32), ("clipped_triangles", c_uint32),
-                ("water_substeps", c_uint32)]
+                ("water_substeps", c_uint32), ("dry_bodies", c_uint32), ("whole_bodies", c_uint32),
+                ("still_bodies", c_uint32), ("deep_bodies", c_uint32), ("coarse_bodies", c_uint32),
+                ("frictionless_sources", c_uint32), ("steady_sources", c_uint32), ("active_cells", c_uint32),
+                ("water_waits", c_uint64)]
 
 
 # ---- Water -------------------------------------------------------------------------------------------------
@@ -200,7 +217,8 @@ class Border(IntEnum):
 class WaterDef(Struct):
     _fields_ = [("struct_size", c_uint32), ("nx", c_uint32), ("ny", c_uint32), ("border", c_uint32),
                 ("border_cells", c_uint32), ("cell", c_float), ("depth", c_float),
-                ("snapshot_interval", c_float), ("centre_x", c_double), ("centre_y", c_double)]
+                ("snapshot_interval", c_float), ("centre_x", c_double), ("centre_y", c_double),
+                ("order", c_uint32), ("reserved", c_uint32)]
 
 
 class WaterState(Struct):
@@ -296,7 +314,7 @@ class ReplayStepResult(Struct):
 
 # ---- The tables --------------------------------------------------------------------------------------------
 
-ENUMS = (Status, Axes, LogLevel, Model, Surface, Border, DeviceStatus, Part)
+ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, Part)
 
 STRUCTS = (Vec3, Position, Quaternion, Pose, Twist, Wrench, ContextDef, MapInfo, MapSource, WorldDef,
            WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, SourceState, DeviceInfo,

@@ -51,7 +51,8 @@ class Map(Object):
 class World(Object):
     """Bodies and at most one water.
 
-    Options: model, surface, gravity (m/s^2), density (kg/m^3), viscosity (m^2/s), level (m).
+    Options: model, surface, gravity (m/s^2), density (kg/m^3), viscosity (m^2/s), level (m), skip,
+    error_budget (N), time_budget (us).
     """
 
     _close_function = "frm_world_destroy"

@@ -49,7 +49,12 @@ static void bad_defs(void) {
     OK(init(&def, sizeof def));
     CHECK(def.nx == 200 && def.ny == 200 && def.border == FRM_BORDER_ABSORBING && def.border_cells == 16);
     CHECK(def.cell == 0.025f && def.depth == 0.5f && def.snapshot_interval == 1.0f / 60);
-    CHECK(def.centre_x == 0.0 && def.centre_y == 0.0);
+    CHECK(def.centre_x == 0.0 && def.centre_y == 0.0 && def.order == 2);
+    def.order = 3;
+    REFUSED(FRM_ERROR_ARGUMENT, "order", use(&def));
+    OK(init(&def, sizeof def));
+    def.reserved = 1;
+    REFUSED(FRM_ERROR_ARGUMENT, "reserved", use(&def));
 
     refuse_size(7, 200, 0, 0, "nx");
     refuse_size(0, 200, 0, 0, "nx");

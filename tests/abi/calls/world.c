@@ -31,6 +31,7 @@ static void bad_defs(void) {
     size_t i;
     OK(init(&def, sizeof def));
     CHECK(def.model == FRM_MODEL_DEFAULT && def.surface == FRM_SURFACE_FLAT && def.level == 0.0);
+    CHECK(def.skip == FRM_SKIP_DEFAULT && def.error_budget == 0.0f && def.time_budget == 0.0f);
     CHECK(def.gravity == 9.80665f && def.density == 1000.0f && def.viscosity == 1e-6f);
 
     def.model = 32;
@@ -38,6 +39,20 @@ static void bad_defs(void) {
     OK(init(&def, sizeof def));
     def.surface = 2;
     REFUSED(FRM_ERROR_ARGUMENT, "surface", use(&def));
+    OK(init(&def, sizeof def));
+    def.skip = 256;
+    REFUSED(FRM_ERROR_ARGUMENT, "skip", use(&def));
+    OK(init(&def, sizeof def));
+    def.error_budget = -1.0f;
+    REFUSED(FRM_ERROR_ARGUMENT, "error_budget", use(&def));
+    def.error_budget = not_a_number;
+    REFUSED(FRM_ERROR_ARGUMENT, "error_budget", use(&def));
+    OK(init(&def, sizeof def));
+    def.time_budget = 1.1e6f;
+    REFUSED(FRM_ERROR_ARGUMENT, "time_budget", use(&def));
+    OK(init(&def, sizeof def));
+    def.reserved = 1;
+    REFUSED(FRM_ERROR_ARGUMENT, "reserved", use(&def));
     OK(init(&def, sizeof def));
     def.level = (double)not_a_number;
     REFUSED(FRM_ERROR_ARGUMENT, "level", use(&def));
