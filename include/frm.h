@@ -341,7 +341,7 @@ typedef struct frm_world_def {
     float error_budget; /* N, 0 to 1e9: what a body's resistance may be off for the sake of speed. The coarsest clusters
                            of sources are looked up whose bound is within it. Default 0: every source */
     float time_budget; /* us, 0 to 1e6: what the resistance of all bodies may take, by a fixed price a lookup (so that
-                          the bits are the same anywhere). Clusters are made coarser until it is met, whatever the error.
+                          the bits are the same anywhere). Clusters are made coarser until it is met, at any error.
                           Default 0: as long as it takes */
     uint32_t reserved;
 } frm_world_def;
