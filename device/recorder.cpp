@@ -14,8 +14,9 @@ Recorder::Recorder(api::WorldObject& world, const char* path, std::uint32_t hash
     writer_.write(event::World{w.def(), hash_interval, axes});
     if (const Water* water = w.water()) {
         water_created(w);
-        const float* height = water->field.height();
-        height_set(w, height, water->field.cells());
+        std::vector<float> height(water->field.cells());
+        water->field.copy_heights(height.data());
+        height_set(w, height.data(), height.size());
         if (water->pressure()) pressure_set(w, water->pressure(), water->field.cells());
     }
     for (const auto& body : w.bodies()) body_created(w, *body);

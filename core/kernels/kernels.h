@@ -7,15 +7,51 @@
 
 namespace frm {
 
+/// One row of cells of the wave field, from a column that is a multiple of 32 on: pointers to that column, 64-byte
+/// aligned, of arrays that are readable a vector (16 floats) to either side. Face i lies left of cell i.
+struct WaveRow {
+    float* height;
+    float* velocity_x;          ///< count + 1 faces
+    const float* below;         ///< velocity_y between this row and the one below
+    float* above;               ///< velocity_y between this row and the one above
+    const float* height_above;  ///< null: `above` has been moved already
+    std::ptrdiff_t count;
+    float left, right;  ///< the velocity at a wall's face, and that of face `count`
+    bool wall_left;     ///< face 0 is a wall's
+};
+
+/// The same at fourth order, which reaches one row further to each side.
+struct WaveRow4 {
+    float* height;
+    float* velocity_x;
+    const float* below;                           ///< velocity_y one row further below
+    const float* velocity_y;                      ///< between this row and the one below
+    const float* above;                           ///< between this row and the one above
+    float* above_2;                               ///< one row further above
+    const float *height_1, *height_2, *height_3;  ///< the rows above; height_3 null: `above_2` has been moved already
+    std::ptrdiff_t count;
+    float left, right;
+    bool wall_left, wall_right;
+};
+
 struct Kernels {
     const char* instructions;  ///< "baseline", "avx2" or "avx512"
 
-    /// u[i] -= factor * (h[i] - h[i - behind]) for i < count: Eq. 7 along a row of faces; `behind` is 1 along the row, a
-    /// row's stride across it.
-    void (*wave_velocity_row)(float* u, const float* h, std::ptrdiff_t behind, std::ptrdiff_t count, float factor);
-    /// h[i] -= factor * ((u[i + 1] - u[i]) + (above[i] - below[i])) for i < count: Eq. 8 along a row of cells.
-    void (*wave_height_row)(float* h, const float* u, const float* below, const float* above, std::ptrdiff_t count,
-                            float factor);
+    /// One step of a row and of the faces above it: velocity_x -= f dh/dx, above -= f dh/dy, then height -= g times the
+    /// divergence (Eqs. 7 and 8).
+    void (*wave_row)(const WaveRow& row, float f, float g);
+    /// The same with velocity_x, above_2 and height; f1, f3 are f times 27/24 and 1/24, and so g1, g3.
+    void (*wave_row_4)(const WaveRow4& row, float f1, float f3, float g1, float g3);
+    /// v[i] -= f (h[i] - below[i]): faces across rows, alone.
+    void (*wave_faces)(float* v, const float* h, const float* below, std::ptrdiff_t count, float f);
+    void (*wave_faces_4)(float* v, const float* h, const float* below, const float* above, const float* below_2,
+                         std::ptrdiff_t count, float f1, float f3);
+    /// v[i] = factor h[i].
+    void (*wave_outflow)(float* v, const float* h, std::ptrdiff_t count, float factor);
+    /// u[i] += factor (p[i] - p[i - behind]).
+    void (*wave_push)(float* u, const float* p, std::ptrdiff_t behind, std::ptrdiff_t count, float factor);
+    void (*scale)(float* x, std::ptrdiff_t count, float factor);
+    void (*scale_each)(float* x, const float* factors, std::ptrdiff_t count);
 };
 
 /// The best for this machine; the same on every call.

@@ -4,6 +4,7 @@
 #include "core/kernels/kernels.h"
 
 namespace frm::FRM_KERNEL_SET {
+#include "core/kernels/lanes.inl"
 #include "core/kernels/wave_rows.inl"
 
 #define FRM_KERNEL_TEXT(name) #name
@@ -12,7 +13,13 @@ namespace frm::FRM_KERNEL_SET {
 extern const Kernels kernels;
 const Kernels kernels{
     FRM_KERNEL_NAME(FRM_KERNEL_SET),
-    wave_velocity_row,
-    wave_height_row,
+    wave_row,
+    wave_row_4,
+    wave_faces,
+    wave_faces_4,
+    wave_outflow,
+    wave_push,
+    scale,
+    scale_each,
 };
 }  // namespace frm::FRM_KERNEL_SET

@@ -19,7 +19,10 @@ std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
 void raise_evenly(Field& water, double volume) {
     if (volume == 0) return;
     const auto rise = static_cast<float>(volume / static_cast<double>(water.cells()));
-    for (std::size_t i = 0; i < water.cells(); ++i) water.height()[i] += rise;
+    for (std::int32_t j = 0; j < water.def().ny; ++j) {
+        float* const h = water.height_row(j);
+        for (std::int32_t i = 0; i < water.def().nx; ++i) h[i] += rise;
+    }
 }
 
 }  // namespace
@@ -35,12 +38,11 @@ void displace_water(Footprint& footprint, Field& water) {
     const float* before = footprint.thickness_before();
     for (std::int32_t j = changed.j0; j < changed.j1; ++j)
         for (std::int32_t i = changed.i0; i < changed.i1; ++i)
-            footprint.own.height()[at(i, j, n)] += now[at(i, j, n)] - before[at(i, j, n)];
+            footprint.own.height_row(j)[i] += now[at(i, j, n)] - before[at(i, j, n)];
     const Rect r = inside_water(footprint, water, changed);
     for (std::int32_t j = r.j0; j < r.j1; ++j)
         for (std::int32_t i = r.i0; i < r.i1; ++i)
-            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] +=
-                now[at(i, j, n)] - before[at(i, j, n)];
+            water.height_row(j + footprint.j0())[i + footprint.i0()] += now[at(i, j, n)] - before[at(i, j, n)];
 }
 
 void withdraw_body(Footprint& footprint, Field& water) {
@@ -50,7 +52,7 @@ void withdraw_body(Footprint& footprint, Field& water) {
     const Rect r = inside_water(footprint, water, footprint.wet_before());
     for (std::int32_t j = r.j0; j < r.j1; ++j)
         for (std::int32_t i = r.i0; i < r.i1; ++i)
-            water.height()[at(i + footprint.i0(), j + footprint.j0(), water.def().nx)] -=
+            water.height_row(j + footprint.j0())[i + footprint.i0()] -=
                 footprint.thickness_before()[at(i, j, n)] * share;
 }
 
@@ -73,23 +75,22 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
     };
 
     const Rect r = inside_water(footprint, water, {wet.i0, wet.j0, wet.i1 + 1, wet.j1 + 1});
-    const std::int32_t nx = water.def().nx;
     for (std::int32_t j = r.j0; j < r.j1; ++j) {
         for (std::int32_t i = r.i0; i < r.i1; ++i) {
             const std::int32_t wi = i + footprint.i0(), wj = j + footprint.j0();
             if (wi > 0 && (inside(i, j) || inside(i - 1, j))) {
                 const float y = local(static_cast<float>(j) + 0.5f, body.j, body.y);
-                float& u = water.velocity_x()[at(wi, wj, nx + 1)];
+                float& u = water.velocity_x_row(wj)[wi];
                 const float change = linear.x + angular.y * z - angular.z * y - u;
                 u += change;
-                footprint.own.velocity_x()[at(i, j, n + 1)] += change;
+                footprint.own.velocity_x_row(j)[i] += change;
             }
             if (wj > 0 && (inside(i, j) || inside(i, j - 1))) {
                 const float x = local(static_cast<float>(i) + 0.5f, body.i, body.x);
-                float& v = water.velocity_y()[at(wi, wj, nx)];
+                float& v = water.velocity_y_row(wj)[wi];
                 const float change = linear.y + angular.z * x - angular.x * z - v;
                 v += change;
-                footprint.own.velocity_y()[at(i, j, n)] += change;
+                footprint.own.velocity_y_row(j)[i] += change;
             }
         }
     }
@@ -97,8 +98,8 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
 
 void push_water(Footprint& footprint, Field& water, float factor) {
     const std::int32_t n = footprint.size();
-    footprint.own.push(footprint.pressure(), n, n, footprint.pressed(), 0, 0, factor);
-    water.push(footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), factor);
+    footprint.own.push({footprint.pressure(), n, n, footprint.pressed(), 0, 0, factor});
+    water.push({footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), factor});
 }
 
 }  // namespace frm

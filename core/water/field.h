@@ -45,55 +45,87 @@ struct FieldDef {
     float cell = 0;   ///< m
     float depth = 0;  ///< m
     Border border = Border::absorbing;
-    std::int32_t border_cells = 0;
-    std::int32_t order = 2;  ///< of the differences in space: 2 or 4
+    std::int32_t border_cells = 0;  ///< of the absorbing layer; at most 64
+    std::int32_t order = 2;         ///< of the differences in space: 2 or 4
 };
 
+/// A pressure on the surface (Eq. 10): an array of `columns` by `rows` cells, not zero within `where`, whose cell
+/// (0, 0) lies on cell (di, dj) of the field. Each step adds factor * its gradient to the velocities; factor = dt / density.
+struct Push {
+    const float* pressure = nullptr;
+    std::int32_t columns = 0, rows = 0;
+    Rect where;
+    std::int32_t di = 0, dj = 0;
+    float factor = 0;
+};
+
+/// Columns i0 <= i < i1 of a row.
+struct Span {
+    std::int32_t i0, i1;
+};
+
+/// Rows are aligned to 64 bytes and padded; what lies between a row's end and the next one's begin stays zero.
 class Field {
 public:
     Field(const FieldDef& def, std::pmr::memory_resource* memory);
+    Field(const Field&) = delete;
+    Field& operator=(const Field&) = delete;
 
     const FieldDef& def() const { return def_; }
-    std::size_t cells() const { return height_.size(); }
-    /// Largest stable dt of one step: Courant number 1 / sqrt(2) in two dimensions, less a tenth.
+    std::size_t cells() const { return static_cast<std::size_t>(def_.nx) * static_cast<std::size_t>(def_.ny); }
+    /// Largest dt of one step. Second order: nine tenths of the stable one (Courant number 1 / sqrt(2) in two
+    /// dimensions). Fourth order is stable up to 0.606 but exact to 0.1 % only up to 0.4, where the step in time is
+    /// what is left of the phase error.
     static float stable_step(const FieldDef& def, float gravity);
 
-    /// One leapfrog step: velocities by the slope (Eq. 7), then heights by the divergence (Eq. 8). No numerical
-    /// damping.
-    void step(float dt, float gravity, std::uint32_t threads);
-    /// The second term of Eq. 10: velocities += factor * gradient of pressure; factor = dt / density. The pressure is an
-    /// array of `columns` by `rows` cells, not zero within `where`, whose cell (0, 0) lies on cell (di, dj) of this field.
-    void push(const float* pressure, std::int32_t columns, std::int32_t rows, const Rect& where, std::int32_t di,
-              std::int32_t dj, float factor);
+    /// Leapfrog steps: velocities by the slope (Eq. 7) and the pushes, then heights by the divergence (Eq. 8). No
+    /// numerical damping. Several steps go through the rows together, so that a row stays in the cache for all of
+    /// them; the bits are those of one after the other, with any number of threads.
+    void advance(float dt, float gravity, std::uint32_t steps, const Push* pushes, std::size_t push_count,
+                 std::uint32_t threads);
+    void step(float dt, float gravity, std::uint32_t threads) { advance(dt, gravity, 1, nullptr, 0, threads); }
+    /// A step's push, at once.
+    void push(const Push& push);
 
     /// Bilinear; zero outside.
     float height_at(const GridOrigin& origin, float x, float y) const;
     void velocity_at(const GridOrigin& origin, float x, float y, float& u, float& v) const;
 
-    float* height() { return height_.data(); }
-    const float* height() const { return height_.data(); }
-    /// Face i lies between cells i - 1 and i: [ny][nx + 1].
-    float* velocity_x() { return u_.data(); }
-    const float* velocity_x() const { return u_.data(); }
-    /// Face j lies between cells j - 1 and j: [ny + 1][nx].
-    float* velocity_y() { return v_.data(); }
-    const float* velocity_y() const { return v_.data(); }
+    /// Floats from one row to the next, in each of the arrays.
+    std::ptrdiff_t stride() const { return stride_; }
+    float* height_row(std::int32_t j) { return height_ + j * stride_; }
+    const float* height_row(std::int32_t j) const { return height_ + j * stride_; }
+    /// nx + 1 faces; face i lies between cells i - 1 and i.
+    float* velocity_x_row(std::int32_t j) { return u_ + j * stride_; }
+    const float* velocity_x_row(std::int32_t j) const { return u_ + j * stride_; }
+    /// ny + 1 rows; face j lies between cells j - 1 and j.
+    float* velocity_y_row(std::int32_t j) { return v_ + j * stride_; }
+    const float* velocity_y_row(std::int32_t j) const { return v_ + j * stride_; }
 
+    /// Between the field's heights and an array of nx by ny.
+    void copy_heights(float* out) const;
+    /// Calm but for these heights.
+    void set_heights(const float* height);
     void calm();
     /// Moves the window over the water: what was at cell (i + di, j + dj) is at (i, j) afterwards; new cells are calm.
     void shift(std::int32_t di, std::int32_t dj);
     void hash(StateHash& hash) const;
 
 private:
-    void step_velocities(float factor, float outflow, std::uint32_t threads);
-    void step_heights(float factor, std::uint32_t threads);
-    void damp(float dt, float speed);
+    friend class WaveStep;
 
     FieldDef def_;
-    std::pmr::vector<float> height_, u_, v_;
+    std::ptrdiff_t stride_;
+    std::pmr::vector<float> memory_;
+    float *height_, *u_, *v_;  ///< row 0, column 0; v_ also has rows -1 and ny + 1
+    /// What the absorbing layer keeps of each of its cells in a step, and of its faces, from the border inwards; and
+    /// the same backwards.
+    std::pmr::vector<float> keep_;
+    float keeps_for_ = 0;  ///< the dt of keep_ times the waves' speed, m
 };
 
-/// Moves the contents of an nx by ny array by whole cells, zero where nothing was.
-void shift_array(float* data, std::int32_t nx, std::int32_t ny, std::int32_t di, std::int32_t dj);
+/// Moves the contents of an nx by ny array by whole cells, zero where nothing was; `stride` floats a row.
+void shift_array(float* data, std::int32_t nx, std::int32_t ny, std::ptrdiff_t stride, std::int32_t di,
+                 std::int32_t dj);
 
 }  // namespace frm

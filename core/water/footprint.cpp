@@ -129,7 +129,7 @@ void Footprint::shift(std::int32_t di, std::int32_t dj, Field* water) {
             own.shift(di, dj);
     }
     if (!wet_before_.empty()) {
-        shift_array(thickness_before_.data(), n, n, di, dj);
+        shift_array(thickness_before_.data(), n, n, n, di, dj);
         wet_before_ = wet_before_.moved(-di, -dj).clipped(n, n);
     }
 }
@@ -144,8 +144,7 @@ void Footprint::leave_behind(std::int32_t di, std::int32_t dj, Field& water) con
             if (wi >= di && wi < n + di && wj >= dj && wj < n + dj) continue;  // stays in the window
             const std::size_t from =
                 static_cast<std::size_t>(wj) * static_cast<std::size_t>(n) + static_cast<std::size_t>(wi);
-            water.height()[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i)] -=
-                thickness_before_[from];
+            water.height_row(j)[i] -= thickness_before_[from];
         }
     }
 }

@@ -1,7 +1,5 @@
 #include "core/water/snapshot.h"
 
-#include <cstring>
-
 namespace frm {
 
 SnapshotExchange::SnapshotExchange(std::size_t cells, std::pmr::memory_resource* memory)
@@ -36,17 +34,16 @@ SnapshotExchange::Slot& SnapshotExchange::acquire() {
 
 void copy_to_centres(const Field& field, float* height, float* velocity_x, float* velocity_y) {
     const std::int32_t nx = field.def().nx, ny = field.def().ny;
-    if (height) std::memcpy(height, field.height(), field.cells() * sizeof(float));
+    if (height) field.copy_heights(height);
     for (std::int32_t j = 0; j < ny; ++j) {
         const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
-        const float* u = field.velocity_x() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx + 1);
-        const float* v = field.velocity_y() + row;
+        const float *u = field.velocity_x_row(j), *v = field.velocity_y_row(j), *above = field.velocity_y_row(j + 1);
         if (velocity_x)
             for (std::int32_t i = 0; i < nx; ++i)
                 velocity_x[row + static_cast<std::size_t>(i)] = 0.5f * (u[i] + u[i + 1]);
         if (velocity_y)
             for (std::int32_t i = 0; i < nx; ++i)
-                velocity_y[row + static_cast<std::size_t>(i)] = 0.5f * (v[i] + v[nx + i]);
+                velocity_y[row + static_cast<std::size_t>(i)] = 0.5f * (v[i] + above[i]);
     }
 }
 

@@ -10,8 +10,7 @@ Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
     : field(def.field, memory), snapshots(field.cells(), memory), def_(def), pressure_(field.cells(), 0.0f, memory) {}
 
 void Water::set_height(const float* height) {
-    field.calm();
-    std::memcpy(field.height(), height, field.cells() * sizeof(float));
+    field.set_heights(height);
     next_snapshot_ = 0;
 }
 

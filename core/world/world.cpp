@@ -159,7 +159,7 @@ void World::move_water(float dt, std::uint32_t substeps) {
             for (const auto& body : bodies_)
                 force_velocity(*body->footprint, field, body->def.twist.linear, body->def.twist.angular,
                                body->wet_height);
-        if (water_->pressure()) field.push(water_->pressure(), all.i1, all.j1, all, 0, 0, push);
+        if (water_->pressure()) field.push({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
         for (const auto& body : bodies_) push_water(*body->footprint, field, push);
         field.step(step, def_.fluid.gravity, threads_);
         if (!(def_.model & model_own_waves)) continue;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
@@ -27,7 +28,7 @@ TEST_CASE("readers always see one whole snapshot while another thread publishes"
     std::thread one(reader), two(reader);
     std::uint64_t published = 0;
     for (std::uint64_t tick = 1; tick <= 20000; ++tick) {
-        for (std::size_t i = 0; i < field.cells(); ++i) field.height()[i] = static_cast<float>(tick);
+        for (std::int32_t j = 0; j < 32; ++j) std::fill_n(field.height_row(j), 32, static_cast<float>(tick));
         published += exchange.publish(field, tick, 0);
     }
     while (reads.load() < 2) std::this_thread::yield();
@@ -41,8 +42,8 @@ TEST_CASE("readers always see one whole snapshot while another thread publishes"
 
 TEST_CASE("face velocities are averaged to the cells' centres", "[snapshot]") {
     Field field({8, 8, 0.1f, 1.0f, Border::reflecting, 0}, test::memory());
-    field.velocity_x()[2 * 9 + 3] = 4;
-    field.velocity_y()[3 * 8 + 5] = 2;
+    field.velocity_x_row(2)[3] = 4;
+    field.velocity_y_row(3)[5] = 2;
     std::vector<float> u(64), v(64);
     copy_to_centres(field, nullptr, u.data(), v.data());
     CHECK(u[2 * 8 + 2] == 2);

@@ -1,4 +1,5 @@
 // Bodies and water: what each does to the other (section 6.3, and the repairs).
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/catch.h"
@@ -16,13 +17,15 @@ std::shared_ptr<const Map> slab_map() {
 
 double volume(const Field& f) {
     double sum = 0;
-    for (std::size_t i = 0; i < f.cells(); ++i) sum += static_cast<double>(f.height()[i]);
+    for (std::int32_t j = 0; j < f.def().ny; ++j)
+        for (std::int32_t i = 0; i < f.def().nx; ++i) sum += static_cast<double>(f.height_row(j)[i]);
     return sum * static_cast<double>(f.def().cell * f.def().cell);
 }
 
 float largest(const Field& f) {
     float most = 0;
-    for (std::size_t i = 0; i < f.cells(); ++i) most = std::fmax(most, std::fabs(f.height()[i]));
+    for (std::int32_t j = 0; j < f.def().ny; ++j)
+        for (std::int32_t i = 0; i < f.def().nx; ++i) most = std::fmax(most, std::fabs(f.height_row(j)[i]));
     return most;
 }
 
@@ -178,8 +181,7 @@ TEST_CASE("a body carried along by the water feels no resistance", "[coupling]")
     // A uniform current: the field's velocity everywhere, and a body that moves with it.
     World world = test::world_of();
     Water& water = world.create_water(test::water_of(160, 0.05f, 1.0f, Border::reflecting));
-    const std::size_t faces = 161 * 160;
-    for (std::size_t i = 0; i < faces; ++i) water.field.velocity_x()[i] = 0.2f;
+    for (std::int32_t j = 0; j < 160; ++j) std::fill_n(water.field.velocity_x_row(j), 161, 0.2f);
     Body& body = world.create_body(body_of(slab_map(), {0, 0, -0.5}, {}, {{0.2f, 0, 0}, {}}));
     world.tick(0.002f);
     CHECK(length(body.forces.pressure.force) < 1e-6f);
@@ -196,7 +198,7 @@ TEST_CASE("a rising body's pressure lifts the water above it", "[coupling]") {
         world.set_motion(body, {{0, 0, -0.2}, {}}, {{0, 0, 0.5f}, {}});
         world.tick(0.002f);
     }
-    const float middle = water.field.height()[48 * 96 + 48];
+    const float middle = water.field.height_row(48)[48];
     CHECK(middle > 1e-5f);
     // And what the water carries is what the upper sources press: p = -f . n / area, about 3 Pa of rho/2 u^2 here.
     CHECK(middle < 0.5f * 1000 * 0.25f / (1000 * 9.8f) * 2);
@@ -246,7 +248,7 @@ TEST_CASE("waves beyond all numbers are reported, and the world goes on", "[coup
     Water& water = world.create_water(test::water_of(64, 0.05f, 0.5f));
     Body& body = world.create_body(body_of(slab_map(), {0, 0, -0.1}, {}, {{0.5f, 0, 0}, {}}));
     CHECK(world.tick(0.002f));
-    for (std::size_t i = 0; i < water.field.cells(); ++i) water.field.height()[i] = INFINITY;
+    for (std::int32_t j = 0; j < 64; ++j) std::fill_n(water.field.height_row(j), 64, INFINITY);
     CHECK_FALSE(world.tick(0.002f));
     CHECK(length(body.forces.total.force) == 0);
     CHECK(largest(water.field) == 0);

@@ -1,0 +1,45 @@
+// The steps of a wave field, row by row.
+#pragma once
+
+#include "core/kernels/kernels.h"
+#include "core/water/field.h"
+
+namespace frm {
+
+/// One call of Field::advance. A row's turn in a step: its own velocities u(r), the faces v(r + lead) above it, then its
+/// heights, then the absorbing layer's part of what no later row needs as it was. It reads what the step before left up
+/// to row r + lag - 1, so that a step can be `lag` rows behind the one before in one sweep over the rows.
+class WaveStep {
+public:
+    WaveStep(Field& field, float dt, float gravity, const Push* pushes, std::size_t push_count);
+
+    void one(std::uint32_t threads);
+    /// All in one sweep.
+    void together(std::uint32_t steps);
+
+private:
+    /// Faces (rows of v) that a range of rows moves itself, and those that it damps itself.
+    struct Own {
+        std::int32_t faces_end, damp_begin, damp_end;
+    };
+
+    std::int32_t lead() const { return fourth_ ? 2 : 1; }
+    std::int32_t lag() const { return fourth_ ? 4 : 2; }
+
+    void row(std::int32_t r, const Own& own);
+    void move_row(std::int32_t r, std::int32_t i0, std::int32_t i1, bool with_faces);
+    void faces(std::int32_t m);
+    void damp_row(std::int32_t r);
+    void damp_faces(std::int32_t m);
+    float keep_of_row(const float* keep, std::int32_t j, std::int32_t rows) const;
+    void damp(float* x, std::int32_t columns, const float* keep, float across);
+
+    Field& field_;
+    const Kernels& kernel_;
+    const Push* pushes_;
+    std::size_t push_count_;
+    bool fourth_, damps_ = false;
+    float slope_, divergence_, outflow_ = 0;
+};
+
+}  // namespace frm
