@@ -16,6 +16,14 @@
 namespace frm::bake {
 
 enum class Quality { draft, standard, high };
+constexpr Quality kQualities[] = {Quality::draft, Quality::standard, Quality::high};
+
+/// "draft", "standard" or "high".
+const char* name_of(Quality quality);
+/// The quality of that name; standard for any other word.
+Quality quality_of(const std::string& name);
+/// What RegionBudget::error is at that quality.
+double region_error_of(Quality quality);
 
 /// Of the error of rounding the tables, share of the largest force.
 constexpr double kRoundingBudget = 5e-3;

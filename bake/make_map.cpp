@@ -89,7 +89,7 @@ std::string provenance(const BakePlan& plan, const std::vector<TaskResult>& resu
     j["mesh"] = options.mesh.substr(options.mesh.find_last_of('/') + 1);
     j["mesh_hash"] = plan.mesh_hash;
     if (options.scale != 1) j["scale"] = options.scale;
-    j["quality"] = options.quality == Quality::draft ? "draft" : options.quality == Quality::high ? "high" : "standard";
+    j["quality"] = name_of(options.quality);
     j["solver"] =
         "lattice Boltzmann D3Q19, regularised, Smagorinsky, interpolated bounce-back, nested blocks (docs/flow.md)";
     j["resolution"] = plan.tasks.front().flow.resolution;

@@ -60,9 +60,7 @@ std::string text_of(double v) {
 std::string mesh_hash(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    char text[20];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv1a(bytes.data(), bytes.size())));
-    return text;
+    return hash_text(fnv1a(bytes.data(), bytes.size()));
 }
 
 void require(bool good, const std::string& text) {
@@ -141,6 +139,18 @@ void add_spins(BakePlan& plan, const SurfaceProperties& shape) {
 }
 
 }  // namespace
+
+const char* name_of(Quality quality) {
+    return quality == Quality::draft ? "draft" : quality == Quality::high ? "high" : "standard";
+}
+
+Quality quality_of(const std::string& name) {
+    for (const Quality quality : kQualities)
+        if (name == name_of(quality)) return quality;
+    return Quality::standard;
+}
+
+double region_error_of(Quality quality) { return preset(quality).region_error; }
 
 std::uint32_t frequency_of(std::uint32_t directions) {
     for (std::uint32_t n = 1; n <= 16; ++n)
