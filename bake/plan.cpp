@@ -235,8 +235,7 @@ BakePlan plan_bake(const BakeOptions& options) {
 std::size_t most_tasks(const BakePlan& plan) {
     if (!(plan.budget.rms > 0)) return plan.tasks.size();
     std::size_t base = 0;
-    for (const Task& task : plan.tasks)
-        base += task.kind == TaskKind::stream && task.flow.speed == plan.options.speed ? 1 : 0;
+    for (const Task& task : plan.tasks) base += task.is_stream(plan.options.speed);
     return plan.tasks.size() + std::max<std::size_t>(plan.most_directions, base) - base;
 }
 
@@ -245,9 +244,8 @@ bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results) {
     std::vector<SolvedDirection> solved;
     for (std::size_t k = 0; k < results.size(); ++k) {
         const Task& task = plan.tasks[k];
-        if (task.kind != TaskKind::stream || task.flow.speed != plan.options.speed) continue;
-        const FlowMeans means = means_of(results[k]);
-        solved.push_back({task.flow.direction, means.force, means.torque - cross(plan.symmetry.centre, means.force)});
+        if (!task.is_stream(plan.options.speed)) continue;
+        solved.push_back(solved_direction(task.flow.direction, means_of(results[k]), plan.symmetry.centre));
     }
     if (solved.size() >= plan.most_directions) return false;
     const KnownForces known(plan.symmetry, solved, plan.reference_length, plan.spacing);

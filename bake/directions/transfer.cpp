@@ -35,6 +35,24 @@ Transfer::Transfer(const Carrier& carrier, const Matrix3& g) : g_(g) {
         if (area > 0) shares_.push_back({pair.first, pair.second, area / whole[pair.first]});
 }
 
+const Transfer& Transfers::of(const Matrix3& g) {
+    for (const Transfer& transfer : known_)
+        if (transfer.g().row == g.row) return transfer;
+    return known_.emplace_back(carrier_, g);
+}
+
+std::vector<PatchForce> Transfers::mean(const std::vector<PatchForce>& patch, const std::vector<Matrix3>& by) {
+    std::vector<PatchForce> mean(carrier_.regions.count);
+    const double part = 1.0 / static_cast<double>(by.size());
+    for (const Matrix3& g : by) {
+        for (const Transfer::Share& s : of(g).shares()) {
+            mean[s.region].pressure += (g * patch[s.patch].pressure) * (s.share * part);
+            mean[s.region].friction += (g * patch[s.patch].friction) * (s.share * part);
+        }
+    }
+    return mean;
+}
+
 Regions patches_for(const Surface& surface, const Regions& regions, const std::vector<Matrix3>& elements,
                     const Vec3d& centre, const Landing& landing) {
     if (regions.region.size() != surface.triangles.size()) throw BakeError("directions: regions of another surface");
