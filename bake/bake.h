@@ -55,7 +55,6 @@ struct BakePlan {
     std::string mesh_hash;           ///< of the file's bytes
     Surface surface;                 ///< tessellated
     Symmetry symmetry;               ///< what the plan makes use of
-    double landing_tolerance = 0;    ///< m, how far the surface may be from its images
     Regions patches;                 ///< what a flow's forces are recorded on
     Regions regions;                 ///< the haptic regions: what the map stores
     std::vector<std::string> notes;  ///< repairs and warnings for the user

@@ -141,7 +141,7 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
         report.uncertainty = std::max(report.uncertainty, report.flows[k].uncertainty);
     }
 
-    const Landing landing(plan.surface, plan.landing_tolerance);
+    const Landing landing(plan.surface, plan.symmetry.tolerance);
     Transfers transfers({plan.surface, plan.patches, plan.regions, plan.symmetry.centre, landing});
     Tables tables;
     for (const double speed : plan.speeds) {

@@ -47,7 +47,6 @@ constexpr double overlap_share = 0.25;      ///< of the period, faded into its b
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
 constexpr double most_more = 0.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
-constexpr double most_means = 1u << 28, most_fluctuations = 1u << 31;  // numbers (core/map/codec_read.cpp)
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
 constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5, most_patches = 1000;
 
@@ -69,12 +68,10 @@ void require(bool good, const std::string& text) {
 
 /// What flows are recorded on: of a finite group as many patches as carry exactly; of a continuous one, or where these
 /// are too many to be worth their memory, patches some times smaller than the regions.
-void choose_patches(BakePlan& plan, const SurfaceProperties& shape) {
+void choose_patches(BakePlan& plan) {
     const Symmetry& symmetry = plan.symmetry;
-    plan.landing_tolerance = std::max(symmetry.tolerance, 1e-6 * length(shape.high - shape.low));
-    const bool finite = symmetry.kind == SymmetryKind::finite;
-    if (finite) {
-        const Landing landing(plan.surface, plan.landing_tolerance);
+    if (symmetry.kind == SymmetryKind::finite) {
+        const Landing landing(plan.surface, symmetry.tolerance);
         plan.patches = patches_for(plan.surface, plan.regions, symmetry.elements, symmetry.centre, landing);
         if (plan.patches.count <= std::max(most_patches, plan.regions.count)) return;
     }
@@ -194,7 +191,7 @@ BakePlan plan_bake(const BakeOptions& options) {
                                    : choose_regions(plan.surface, {p.region_error}).regions;
     plan.symmetry.centre = shape.centroid;  // torques are fitted about it, with symmetry or without
     if (options.symmetry) plan.symmetry = find_symmetry(surface);
-    choose_patches(plan, shape);
+    choose_patches(plan);
 
     std::vector<Vec3d> first = distinct_directions(plan.symmetry, frequency);
     while (!options.directions && frequency < p.most_frequency) {
@@ -216,12 +213,13 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.samples = good_length(2 * plan.harmonics + 2);
 
     const double sources = plan.regions.count;
-    require(
-        sources * plan.directions.count() * static_cast<double>(plan.speeds.size()) * Map::components <= most_means &&
-            sources * plan.fluctuation_directions.count() * plan.samples * Map::components <= most_fluctuations,
-        "--sources, --directions and --speeds together are more than a map holds: " +
-            std::to_string(plan.regions.count) + " sources, " + std::to_string(plan.fluctuation_directions.count()) +
-            " directions, " + std::to_string(plan.speeds.size()) + " speeds");
+    const double means = sources * plan.directions.count() * static_cast<double>(plan.speeds.size()) * Map::components;
+    const double fluctuations = sources * plan.fluctuation_directions.count() * plan.samples * Map::components;
+    require(means <= Map::max_means && fluctuations <= Map::max_fluctuations,
+            "--sources, --directions and --speeds together are more than a map holds: " +
+                std::to_string(plan.regions.count) + " sources, " +
+                std::to_string(plan.fluctuation_directions.count()) + " directions, " +
+                std::to_string(plan.speeds.size()) + " speeds");
 
     plan.spacing = spacing_of(frequency);
     if (!options.directions) plan.budget = p.budget;

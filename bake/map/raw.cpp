@@ -16,8 +16,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t magic[8] = {0x89, 'F', 'R', 'W', '\r', '\n', 0x1A, '\n'};
 constexpr std::size_t header_bytes = 8 + 4 + 4 + 8 + 8;
-/// What a map can hold at most: its means and its fluctuations (core/map/codec_read.cpp), in bytes.
-constexpr std::uint64_t max_raw_bytes = std::uint64_t{4} * ((std::uint64_t{1} << 31) + (std::uint64_t{1} << 28));
+constexpr std::uint64_t max_raw_bytes = 4 * (Map::max_fluctuations + Map::max_means);
 
 [[noreturn]] void corrupt(const char* what) { throw Error(FRM_ERROR_CORRUPT, "raw tables: %s", what); }
 

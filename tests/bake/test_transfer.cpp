@@ -120,7 +120,7 @@ TEST_CASE("patches are carried whole, and all go somewhere", "[transfer]") {
     CHECK(same.count == regions.count);
     CHECK(same.region == regions.region);
     CHECK_THROWS_AS(patches_for(s, {{0, 1}, 2}, {Matrix3{}}, symmetry.centre, landing), BakeError);
-    CHECK_THROWS_AS(Landing(s, 0), BakeError);
+    CHECK_THROWS_AS(Landing(s, -1), BakeError);
 }
 
 TEST_CASE("the sides of a blade thinner than the tolerance are not mixed up", "[transfer]") {
