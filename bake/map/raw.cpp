@@ -3,10 +3,10 @@
 #include <zstd.h>
 
 #include <cstring>
-#include <memory>
 
 #include "core/error.h"
 #include "core/map/bytes.h"
+#include "core/map/codec.h"
 #include "core/math/hash.h"
 
 namespace frm::bake {
@@ -75,15 +75,8 @@ std::vector<std::uint8_t> encode_raw(const Map& map, const Tables& tables) {
     head.u32(0);
     head.u64(identity(map));
     head.u64(raw.size());
-    const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
-    if (!context) throw std::bad_alloc();
-    file.resize(header_bytes + ZSTD_compressBound(raw.size()));
-    ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, 19);
-    ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
-    const std::size_t size =
-        ZSTD_compress2(context.get(), file.data() + header_bytes, file.size() - header_bytes, raw.data(), raw.size());
-    if (ZSTD_isError(size)) throw Error(FRM_ERROR_INTERNAL, "zstd: %s", ZSTD_getErrorName(size));
-    file.resize(header_bytes + size);
+    const Bytes stored = compress(raw, 19);
+    head.bytes(stored.data(), stored.size());
     return file;
 }
 
