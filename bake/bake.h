@@ -16,6 +16,14 @@
 namespace frm::bake {
 
 enum class Quality { draft, standard, high };
+constexpr Quality kQualities[] = {Quality::draft, Quality::standard, Quality::high};
+
+/// "draft", "standard" or "high".
+const char* name_of(Quality quality);
+/// The quality of that name; standard for any other word.
+Quality quality_of(const std::string& name);
+/// What RegionBudget::error is at that quality.
+double region_error_of(Quality quality);
 
 /// Of the error of rounding the tables, share of the largest force.
 constexpr double kRoundingBudget = 5e-3;
@@ -47,7 +55,6 @@ struct BakePlan {
     std::string mesh_hash;           ///< of the file's bytes
     Surface surface;                 ///< tessellated
     Symmetry symmetry;               ///< what the plan makes use of
-    double landing_tolerance = 0;    ///< m, how far the surface may be from its images
     Regions patches;                 ///< what a flow's forces are recorded on
     Regions regions;                 ///< the haptic regions: what the map stores
     std::vector<std::string> notes;  ///< repairs and warnings for the user

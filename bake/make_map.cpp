@@ -17,18 +17,18 @@ namespace {
 struct Streams {
     std::vector<const TaskResult*> results;
     std::vector<FlowMeans> means;
-    std::vector<Vec3d> directions;
+    std::vector<SolvedDirection> solved;
     std::vector<std::size_t> tasks;
 };
 
-Streams streams_at(const BakePlan& plan, const std::vector<TaskResult>& results, double speed) {
+Streams streams_at(const BakePlan& plan, const std::vector<TaskResult>& results, const std::vector<FlowMeans>& means,
+                   double speed) {
     Streams out;
     for (std::size_t k = 0; k < results.size(); ++k) {
-        const Task& task = plan.tasks[k];
-        if (task.kind != TaskKind::stream || task.flow.speed != speed) continue;
+        if (!plan.tasks[k].is_stream(speed)) continue;
         out.results.push_back(&results[k]);
-        out.means.push_back(means_of(results[k]));
-        out.directions.push_back(task.flow.direction);
+        out.means.push_back(means[k]);
+        out.solved.push_back(solved_direction(plan.tasks[k].flow.direction, means[k], plan.symmetry.centre));
         out.tasks.push_back(k);
     }
     return out;
@@ -40,8 +40,8 @@ void add_means(Tables& tables, const BakePlan& plan, const RegionForces& forces)
             tables.mean.push_back({Vec3f(f.pressure), Vec3f(f.friction)});
 }
 
-FluctuationSpec spec_of(const BakePlan& plan, const Streams& streams) {
-    FluctuationSpec spec;
+PeriodicSpec spec_of(const BakePlan& plan, const Streams& streams) {
+    PeriodicSpec spec;
     // The solver's interval is a whole number of its steps, so that a period is a whole number of intervals only
     // nearly.
     const double period_time = plan.period * plan.reference_length / plan.options.speed;
@@ -56,7 +56,7 @@ FluctuationSpec spec_of(const BakePlan& plan, const Streams& streams) {
     return spec;
 }
 
-BakeReport::Flow describe(const Task& task, const TaskResult& result) {
+BakeReport::Flow describe(const Task& task, const TaskResult& result, const FlowMeans& means) {
     BakeReport::Flow out;
     out.name = task.name;
     out.uncertainty = result.uncertainty.total();
@@ -69,7 +69,7 @@ BakeReport::Flow describe(const Task& task, const TaskResult& result) {
     out.direction = flow.direction;
     out.speed = flow.speed;
     const double unit = 0.5 * flow.density * flow.speed * flow.speed * result.plan.projected_area;
-    out.drag_coefficient = dot(means_of(result).force, flow.direction) / unit;
+    out.drag_coefficient = dot(means.force, flow.direction) / unit;
     return out;
 }
 
@@ -89,7 +89,7 @@ std::string provenance(const BakePlan& plan, const std::vector<TaskResult>& resu
     j["mesh"] = options.mesh.substr(options.mesh.find_last_of('/') + 1);
     j["mesh_hash"] = plan.mesh_hash;
     if (options.scale != 1) j["scale"] = options.scale;
-    j["quality"] = options.quality == Quality::draft ? "draft" : options.quality == Quality::high ? "high" : "standard";
+    j["quality"] = name_of(options.quality);
     j["solver"] =
         "lattice Boltzmann D3Q19, regularised, Smagorinsky, interpolated bounce-back, nested blocks (docs/flow.md)";
     j["resolution"] = plan.tasks.front().flow.resolution;
@@ -132,19 +132,21 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
     const double reynolds = options.speed * plan.reference_length / options.viscosity;
     double solved = reynolds;
     report = {};
+    std::vector<FlowMeans> means;
     for (std::size_t k = 0; k < results.size(); ++k) {
-        report.flows.push_back(describe(plan.tasks[k], results[k]));
-        if (plan.tasks[k].kind != TaskKind::stream || plan.tasks[k].flow.speed != options.speed) continue;
+        means.push_back(means_of(results[k]));
+        report.flows.push_back(describe(plan.tasks[k], results[k], means[k]));
+        if (!plan.tasks[k].is_stream(options.speed)) continue;
         solved = std::min(solved, results[k].plan.reynolds_solved);
         report.uncertainty = std::max(report.uncertainty, report.flows[k].uncertainty);
     }
 
-    const Landing landing(plan.surface, plan.landing_tolerance);
-    const Carrier carrier{plan.surface, plan.patches, plan.regions, plan.symmetry.centre, landing};
+    const Landing landing(plan.surface, plan.symmetry.tolerance);
+    Transfers transfers({plan.surface, plan.patches, plan.regions, plan.symmetry.centre, landing});
     Tables tables;
     for (const double speed : plan.speeds) {
-        const Streams streams = streams_at(plan, results, speed);
-        const RegionForces forces(carrier, plan.symmetry, streams.means, streams.directions, plan.reference_length,
+        const Streams streams = streams_at(plan, results, means, speed);
+        const RegionForces forces(transfers, plan.symmetry, streams.means, streams.solved, plan.reference_length,
                                   plan.spacing);
         add_means(tables, plan, forces);
         describe(report, streams.tasks, forces.known());
@@ -173,7 +175,7 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
     fill_tables(*map, tables, kRoundingBudget);
     if (plan.spin_rate > 0) {
         map->complete();  // the local streams are looked up in it
-        fill_spin(*map, plan, results, carrier);
+        fill_spin(*map, plan, means, transfers);
     }
     map->provenance = provenance(plan, results, report);
     map->complete();

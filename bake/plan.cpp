@@ -47,7 +47,6 @@ constexpr double overlap_share = 0.25;      ///< of the period, faded into its b
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
 constexpr double most_more = 0.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
-constexpr double most_means = 1u << 28, most_fluctuations = 1u << 31;  // numbers (core/map/codec_read.cpp)
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
 constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5, most_patches = 1000;
 
@@ -60,9 +59,7 @@ std::string text_of(double v) {
 std::string mesh_hash(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    char text[20];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv1a(bytes.data(), bytes.size())));
-    return text;
+    return hash_text(fnv1a(bytes.data(), bytes.size()));
 }
 
 void require(bool good, const std::string& text) {
@@ -71,12 +68,10 @@ void require(bool good, const std::string& text) {
 
 /// What flows are recorded on: of a finite group as many patches as carry exactly; of a continuous one, or where these
 /// are too many to be worth their memory, patches some times smaller than the regions.
-void choose_patches(BakePlan& plan, const SurfaceProperties& shape) {
+void choose_patches(BakePlan& plan) {
     const Symmetry& symmetry = plan.symmetry;
-    plan.landing_tolerance = std::max(symmetry.tolerance, 1e-6 * length(shape.high - shape.low));
-    const bool finite = symmetry.kind == SymmetryKind::finite;
-    if (finite) {
-        const Landing landing(plan.surface, plan.landing_tolerance);
+    if (symmetry.kind == SymmetryKind::finite) {
+        const Landing landing(plan.surface, symmetry.tolerance);
         plan.patches = patches_for(plan.surface, plan.regions, symmetry.elements, symmetry.centre, landing);
         if (plan.patches.count <= std::max(most_patches, plan.regions.count)) return;
     }
@@ -142,6 +137,18 @@ void add_spins(BakePlan& plan, const SurfaceProperties& shape) {
 
 }  // namespace
 
+const char* name_of(Quality quality) {
+    return quality == Quality::draft ? "draft" : quality == Quality::high ? "high" : "standard";
+}
+
+Quality quality_of(const std::string& name) {
+    for (const Quality quality : kQualities)
+        if (name == name_of(quality)) return quality;
+    return Quality::standard;
+}
+
+double region_error_of(Quality quality) { return preset(quality).region_error; }
+
 std::uint32_t frequency_of(std::uint32_t directions) {
     for (std::uint32_t n = 1; n <= 16; ++n)
         if (4 * n * n + 2 == directions) return n;
@@ -184,7 +191,7 @@ BakePlan plan_bake(const BakeOptions& options) {
                                    : choose_regions(plan.surface, {p.region_error}).regions;
     plan.symmetry.centre = shape.centroid;  // torques are fitted about it, with symmetry or without
     if (options.symmetry) plan.symmetry = find_symmetry(surface);
-    choose_patches(plan, shape);
+    choose_patches(plan);
 
     std::vector<Vec3d> first = distinct_directions(plan.symmetry, frequency);
     while (!options.directions && frequency < p.most_frequency) {
@@ -206,12 +213,13 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.samples = good_length(2 * plan.harmonics + 2);
 
     const double sources = plan.regions.count;
-    require(
-        sources * plan.directions.count() * static_cast<double>(plan.speeds.size()) * Map::components <= most_means &&
-            sources * plan.fluctuation_directions.count() * plan.samples * Map::components <= most_fluctuations,
-        "--sources, --directions and --speeds together are more than a map holds: " +
-            std::to_string(plan.regions.count) + " sources, " + std::to_string(plan.fluctuation_directions.count()) +
-            " directions, " + std::to_string(plan.speeds.size()) + " speeds");
+    const double means = sources * plan.directions.count() * static_cast<double>(plan.speeds.size()) * Map::components;
+    const double fluctuations = sources * plan.fluctuation_directions.count() * plan.samples * Map::components;
+    require(means <= Map::max_means && fluctuations <= Map::max_fluctuations,
+            "--sources, --directions and --speeds together are more than a map holds: " +
+                std::to_string(plan.regions.count) + " sources, " +
+                std::to_string(plan.fluctuation_directions.count()) + " directions, " +
+                std::to_string(plan.speeds.size()) + " speeds");
 
     plan.spacing = spacing_of(frequency);
     if (!options.directions) plan.budget = p.budget;
@@ -225,8 +233,7 @@ BakePlan plan_bake(const BakeOptions& options) {
 std::size_t most_tasks(const BakePlan& plan) {
     if (!(plan.budget.rms > 0)) return plan.tasks.size();
     std::size_t base = 0;
-    for (const Task& task : plan.tasks)
-        base += task.kind == TaskKind::stream && task.flow.speed == plan.options.speed ? 1 : 0;
+    for (const Task& task : plan.tasks) base += task.is_stream(plan.options.speed);
     return plan.tasks.size() + std::max<std::size_t>(plan.most_directions, base) - base;
 }
 
@@ -235,9 +242,8 @@ bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results) {
     std::vector<SolvedDirection> solved;
     for (std::size_t k = 0; k < results.size(); ++k) {
         const Task& task = plan.tasks[k];
-        if (task.kind != TaskKind::stream || task.flow.speed != plan.options.speed) continue;
-        const FlowMeans means = means_of(results[k]);
-        solved.push_back({task.flow.direction, means.force, means.torque - cross(plan.symmetry.centre, means.force)});
+        if (!task.is_stream(plan.options.speed)) continue;
+        solved.push_back(solved_direction(task.flow.direction, means_of(results[k]), plan.symmetry.centre));
     }
     if (solved.size() >= plan.most_directions) return false;
     const KnownForces known(plan.symmetry, solved, plan.reference_length, plan.spacing);

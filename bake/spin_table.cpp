@@ -87,35 +87,28 @@ std::vector<Vec3d> distinct_spins(const Symmetry& symmetry) {
     return kept;
 }
 
-void fill_spin(Map& map, const BakePlan& plan, const std::vector<TaskResult>& results, const Carrier& carrier) {
+void fill_spin(Map& map, const BakePlan& plan, const std::vector<FlowMeans>& means, Transfers& transfers) {
     const std::vector<Matrix3> all = isometries(plan.symmetry);
     const DirectionSet axes(1);
     Vec3d centre;
     for (std::uint32_t d = 0; d < axes.count(); ++d) {
-        std::vector<PatchForce> force(plan.regions.count);
+        std::vector<PatchForce> force;
         Vec3d torque;
         bool found = false;
-        for (std::size_t k = 0; k < results.size() && !found; ++k) {
+        for (std::size_t k = 0; k < means.size() && !found; ++k) {
             if (plan.tasks[k].kind != TaskKind::spin) continue;
             centre = plan.tasks[k].flow.spin_centre;
             const Vec3d spin = plan.tasks[k].flow.spin / length(plan.tasks[k].flow.spin);
             // The mean over all that make the same turn of it, as of streams: what a flow has by chance averages out.
-            std::vector<const Matrix3*> by;
+            std::vector<Matrix3> by;
             for (const Matrix3& g : all)
-                if (length(carried(g, spin) - axes.direction(d)) < same) by.push_back(&g);
+                if (length(carried(g, spin) - axes.direction(d)) < same) by.push_back(g);
             if (by.empty()) continue;
             found = true;
-            const FlowMeans means = means_of(results[k]);
+            force = transfers.mean(means[k].patch, by);
             const double part = 1.0 / static_cast<double>(by.size());
-            const Vec3d about_centre = means.torque - cross(centre, means.force);
-            for (const Matrix3* g : by) {
-                torque += carried(*g, about_centre) * part;
-                const Transfer transfer(carrier, *g);
-                for (const Transfer::Share& s : transfer.shares()) {
-                    force[s.region].pressure += (*g * means.patch[s.patch].pressure) * (s.share * part);
-                    force[s.region].friction += (*g * means.patch[s.patch].friction) * (s.share * part);
-                }
-            }
+            const Vec3d about_centre = means[k].torque - cross(centre, means[k].force);
+            for (const Matrix3& g : by) torque += carried(g, about_centre) * part;
         }
         if (!found) throw BakeError("bake: the spin about an axis is missing");
         restore_torque(force, map, centre, torque);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/directions/region_forces.h"
+#include "bake/directions/transfer.h"
 
 namespace frm::bake {
 
@@ -12,6 +12,6 @@ namespace frm::bake {
 std::vector<Vec3d> distinct_spins(const Symmetry& symmetry);
 
 /// map.spin: the mean forces of the plan's spins less what the map's means give for the local streams of the same turn.
-void fill_spin(Map& map, const BakePlan& plan, const std::vector<TaskResult>& results, const Carrier& carrier);
+void fill_spin(Map& map, const BakePlan& plan, const std::vector<FlowMeans>& means, Transfers& transfers);
 
 }  // namespace frm::bake

@@ -59,9 +59,7 @@ Cost cost_of(const bake::BakePlan& plan) {
 }
 
 void complete(const CLI::App& command, BakeArguments& a) {
-    a.bake.quality = a.quality == "draft"  ? bake::Quality::draft
-                     : a.quality == "high" ? bake::Quality::high
-                                           : bake::Quality::standard;
+    a.bake.quality = bake::quality_of(a.quality);
     a.has_scale = command.count("--scale") > 0;
 }
 

@@ -6,7 +6,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "bake/regions/choose.h"
 #include "bake/regions/region_error.h"
 #include "bake/tasks/forces.h"
 #include "cli/bake_output.h"
@@ -53,17 +52,6 @@ private:
     std::size_t first_ = 0;
 };
 
-const char* word_for(bake::Quality quality) {
-    return quality == bake::Quality::draft ? "draft" : quality == bake::Quality::high ? "high" : "standard";
-}
-
-double region_budget(const bake::BakeOptions& options) {
-    if (options.sources) return none;
-    return options.quality == bake::Quality::draft  ? bake::kDraftRegionError
-           : options.quality == bake::Quality::high ? bake::kHighRegionError
-                                                    : bake::kStandardRegionError;
-}
-
 /// Zero is no budget.
 double asked(double budget) { return budget > 0 ? budget : none; }
 
@@ -82,7 +70,7 @@ Json body_of(const bake::BakePlan& plan) {
 
 Json options_of(const bake::BakePlan& plan) {
     const bake::BakeOptions& o = plan.options;
-    return {{"quality", word_for(o.quality)},
+    return {{"quality", bake::name_of(o.quality)},
             {"scale", o.scale},
             {"speed", o.speed},
             {"speeds", plan.speeds},
@@ -140,7 +128,7 @@ void add_errors(Json& j, const MadeMap& made) {
                     {"direction_worst", asked(plan.budget.worst)},
                     {"rounding", bake::kRoundingBudget},
                     {"uncertainty", kNotedUncertainty},
-                    {"regions", region_budget(plan.options)}};
+                    {"regions", plan.options.sources ? none : bake::region_error_of(plan.options.quality)}};
 }
 
 /// The one in which the force swings most.

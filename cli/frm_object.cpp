@@ -1,8 +1,7 @@
 #include "cli/frm_object.h"
 
-#include <cstdio>
-
 #include "cli/command.h"
+#include "core/math/hash.h"
 
 namespace frm::cli {
 
@@ -51,12 +50,10 @@ std::string Session::provenance(frm_map map) const {
 nlohmann::ordered_json json_of(const frm_vec3& v) { return {v.x, v.y, v.z}; }
 
 nlohmann::ordered_json json_of(const frm_map_info& info) {
-    char hash[20];
-    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(info.content_hash));
     nlohmann::ordered_json j;
     j["format_version"] = info.format_version;
     j["file_bytes"] = info.file_bytes;
-    j["content_hash"] = hash;
+    j["content_hash"] = hash_text(info.content_hash);
     j["sources"] = info.sources;
     j["directions"] = info.directions;
     j["fluctuation_directions"] = info.fluctuation_directions;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "bake/bake.h"
 #include "bake/mesh/glb_writer.h"
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/repair.h"
@@ -26,14 +27,6 @@ struct Options {
     double density = 1000;
 };
 
-struct Quality {
-    const char* name;
-    double error;
-};
-
-constexpr Quality qualities[] = {
-    {"draft", bake::kDraftRegionError}, {"standard", bake::kStandardRegionError}, {"high", bake::kHighRegionError}};
-
 struct Choice {
     const char* quality;
     double budget;
@@ -44,10 +37,9 @@ struct Choice {
 std::vector<Choice> choose(const bake::Surface& surface) {
     std::vector<Choice> result;
     const bake::Surface sampled = bake::sample_triangles(surface);
-    for (const Quality& q : qualities) {
-        bake::RegionBudget budget;
-        budget.error = q.error;
-        result.push_back({q.name, q.error, bake::choose_regions(sampled, budget)});
+    for (const bake::Quality quality : bake::kQualities) {
+        const double error = bake::region_error_of(quality);
+        result.push_back({bake::name_of(quality), error, bake::choose_regions(sampled, {error})});
     }
     return result;
 }

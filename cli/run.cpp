@@ -14,6 +14,7 @@
 #include "cli/report.h"
 #include "cli/scene.h"
 #include "cli/tick_times.h"
+#include "core/math/hash.h"
 
 namespace frm::cli {
 namespace {
@@ -165,15 +166,13 @@ private:
 };
 
 nlohmann::ordered_json summary(const Scene& scene, const Run& run, const Options& o, const std::string& recording) {
-    char hash[20];
-    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(run.hash()));
     nlohmann::ordered_json j;
     j["scene"] = scene.title;
     j["ticks"] = run.times().count();
     j["dt"] = scene.dt;
     j["seconds"] = static_cast<double>(run.times().count()) * scene.dt;
     j["tick_seconds"] = 1e-6 * run.times().mean() * static_cast<double>(run.times().count());
-    j["world_hash"] = hash;
+    j["world_hash"] = hash_text(run.hash());
     j["bodies"] = nlohmann::ordered_json::array();
     for (const RunningBody& b : run.bodies())
         j["bodies"].push_back({{"name", b.scene->name},

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "bake/series/align.h"
-#include "bake/series/periodic.h"
 
 namespace frm::bake {
 namespace {
@@ -43,16 +42,15 @@ std::vector<Vec3d> whole(const Fluctuation& f, std::uint32_t regions, std::uint3
 }
 
 Fluctuation one_direction(const TaskResult& result, const Transfer& transfer, std::uint32_t regions,
-                          const FluctuationSpec& spec) {
+                          const PeriodicSpec& spec) {
     const Seam seam = make_seam(whole_force(result), spec.period);
     const std::vector<float> force = carried(result, transfer, regions);
-    const PeriodicSpec periodic{spec.period, spec.samples, spec.harmonics, spec.threshold};
     Fluctuation out(std::size_t{regions} * spec.samples * components);
     std::vector<float> signal(result.samples);
     for (std::size_t l = 0; l < regions; ++l) {
         for (std::size_t c = 0; c < components; ++c) {
             for (std::size_t s = 0; s < signal.size(); ++s) signal[s] = force[(s * regions + l) * components + c];
-            const PeriodicSeries series = make_periodic(signal, seam, periodic);
+            const PeriodicSeries series = make_periodic(signal, seam, spec);
             for (std::size_t s = 0; s < spec.samples; ++s)
                 out[(l * spec.samples + s) * components + c] = series.fluctuation[s];
         }
@@ -76,8 +74,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours_in(const Directi
 }  // namespace
 
 std::vector<Fluctuation> fluctuations(const RegionForces& forces, const std::vector<const TaskResult*>& results,
-                                      std::uint32_t regions, const DirectionSet& directions,
-                                      const FluctuationSpec& spec) {
+                                      std::uint32_t regions, const DirectionSet& directions, const PeriodicSpec& spec) {
     std::vector<Fluctuation> out;
     std::vector<std::vector<Vec3d>> wholes;
     for (std::uint32_t d = 0; d < directions.count(); ++d) {

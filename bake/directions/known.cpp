@@ -51,6 +51,10 @@ std::vector<FitValue> values_of(const std::vector<std::vector<Image>>& images,
 
 }  // namespace
 
+SolvedDirection solved_direction(const Vec3d& e, const FlowMeans& means, const Vec3d& centre) {
+    return {e, means.force, means.torque - cross(centre, means.force)};
+}
+
 double spacing_of(std::uint32_t frequency) { return std::sqrt(4 * pi / (4.0 * frequency * frequency + 2)); }
 
 KnownForces::KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirection>& solved, double size,
@@ -59,18 +63,14 @@ KnownForces::KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirec
       spacing_(spacing),
       images_(bake::images_of(symmetry, solved, spacing)),
       sites_(sites_of(images_)),
-      model_(choose_model(sites_, values_of(images_, solved, size))),
+      values_(values_of(images_, solved, size)),
+      model_(choose_model(sites_, values_)),
       fit_(sites_, model_) {
-    std::size_t site = 0;
-    for (const auto& list : images_) {
-        first_.push_back(site);
-        site += list.size();
-    }
-    const std::vector<FitValue> values = values_of(images_, solved, size), predicted = fit_.left_out(values);
+    const std::vector<FitValue> predicted = fit_.left_out(values_);
     double largest = 0;
-    for (const FitValue& value : values) largest = std::max(largest, length(force_of(value)));
-    for (std::size_t i = 0; i < values.size(); ++i)
-        error_.push_back(largest > 0 ? length(force_of(predicted[i]) - force_of(values[i])) / largest : 0);
+    for (const FitValue& value : values_) largest = std::max(largest, length(force_of(value)));
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        error_.push_back(largest > 0 ? length(force_of(predicted[i]) - force_of(values_[i])) / largest : 0);
 }
 
 DirectionErrors KnownForces::errors() const {
@@ -86,8 +86,10 @@ DirectionErrors KnownForces::errors() const {
 }
 
 double KnownForces::error_of(std::size_t k) const {
-    const auto first = error_.begin() + static_cast<std::ptrdiff_t>(first_[k]);
-    return *std::max_element(first, first + static_cast<std::ptrdiff_t>(images_[k].size()));
+    double worst = 0;
+    for (std::size_t i = 0; i < sites_.size(); ++i)
+        if (sites_[i].group == k) worst = std::max(worst, error_[i]);
+    return worst;
 }
 
 std::vector<Vec3d> KnownForces::next(std::size_t count) const {

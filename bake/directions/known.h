@@ -7,6 +7,7 @@
 #include "bake/directions/fit.h"
 #include "bake/directions/images.h"
 #include "bake/symmetry/symmetry.h"
+#include "bake/tasks/forces.h"
 
 namespace frm::bake {
 
@@ -15,6 +16,8 @@ struct SolvedDirection {
     Vec3d direction;
     Vec3d force, torque;
 };
+
+SolvedDirection solved_direction(const Vec3d& e, const FlowMeans& means, const Vec3d& centre);
 
 /// Errors of the force at directions that were left out, as shares of the largest force.
 struct DirectionErrors {
@@ -26,9 +29,9 @@ public:
     /// `size`: a length that makes a force of a torque. Images are no farther apart than `spacing` radians.
     KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirection>& solved, double size, double spacing);
 
-    /// The images of solved direction k; they are sites first_site(k) and on of the fit.
     const std::vector<Image>& images_of(std::size_t k) const { return images_[k]; }
-    std::size_t first_site(std::size_t k) const { return first_[k]; }
+    /// All images of all solved directions, in their order; a site's group is its solved direction.
+    const std::vector<FitSite>& sites() const { return sites_; }
     const DirectionFit& fit() const { return fit_; }
 
     /// Every solved direction predicted from the others; zero, which is not known, where there is one only.
@@ -42,8 +45,8 @@ private:
     const Symmetry& symmetry_;
     double spacing_;
     std::vector<std::vector<Image>> images_;
-    std::vector<std::size_t> first_;
     std::vector<FitSite> sites_;
+    std::vector<FitValue> values_;
     std::vector<double> error_;  // of the force at each site, predicted without its group; share of the largest force
     FitModel model_;
     DirectionFit fit_;

@@ -2,7 +2,6 @@
 // fluctuations from the nearest flow.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "bake/directions/known.h"
@@ -13,9 +12,10 @@ namespace frm::bake {
 
 class RegionForces {
 public:
-    /// `means[k]` and `directions[k]`: of one solved flow; all at one speed. `size`, `spacing`: see KnownForces.
-    RegionForces(const Carrier& carrier, const Symmetry& symmetry, std::vector<FlowMeans> means,
-                 const std::vector<Vec3d>& directions, double size, double spacing);
+    /// `means[k]` and `solved[k]`: of one flow; all at one speed. `size`, `spacing`: see KnownForces. Keeps a reference
+    /// to `transfers`.
+    RegionForces(Transfers& transfers, const Symmetry& symmetry, std::vector<FlowMeans> means,
+                 const std::vector<SolvedDirection>& solved, double size, double spacing);
 
     /// The mean force on each region in a stream of unit direction e.
     std::vector<PatchForce> mean(const Vec3d& e) const;
@@ -34,14 +34,11 @@ public:
     const std::vector<FlowMeans>& flows() const { return means_; }
 
 private:
-    const Transfer& transfer(const Matrix3& g);
-
-    Carrier carrier_;
+    Transfers& transfers_;
     std::vector<FlowMeans> means_;
     KnownForces known_;
-    std::vector<std::unique_ptr<Transfer>> transfers_;
+    DirectionFit rms_fit_;
     std::vector<std::vector<PatchForce>> site_means_;  // [site][region]
-    std::unique_ptr<DirectionFit> rms_fit_;
 };
 
 }  // namespace frm::bake

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "bake/directions/landing.h"
 #include "bake/math/matrix.h"
 #include "bake/mesh/surface.h"
+#include "bake/tasks/forces.h"
 
 namespace frm::bake {
 
@@ -36,6 +38,21 @@ public:
 private:
     Matrix3 g_;
     std::vector<Share> shares_;
+};
+
+/// The transfers of one body, each worked out when it is first asked for.
+class Transfers {
+public:
+    explicit Transfers(const Carrier& carrier) : carrier_(carrier) {}
+
+    /// Good as long as this is.
+    const Transfer& of(const Matrix3& g);
+    /// The mean, over the isometries of `by`, of the forces on regions that a flow's forces on patches become.
+    std::vector<PatchForce> mean(const std::vector<PatchForce>& patch, const std::vector<Matrix3>& by);
+
+private:
+    Carrier carrier_;
+    std::deque<Transfer> known_;
 };
 
 /// The fewest patches each of which every element of a finite group carries into one region, so that carried regions

@@ -3,10 +3,10 @@
 #include <zstd.h>
 
 #include <cstring>
-#include <memory>
 
 #include "core/error.h"
 #include "core/map/bytes.h"
+#include "core/map/codec.h"
 #include "core/math/hash.h"
 
 namespace frm::bake {
@@ -16,8 +16,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t magic[8] = {0x89, 'F', 'R', 'W', '\r', '\n', 0x1A, '\n'};
 constexpr std::size_t header_bytes = 8 + 4 + 4 + 8 + 8;
-/// What a map can hold at most: its means and its fluctuations (core/map/codec_read.cpp), in bytes.
-constexpr std::uint64_t max_raw_bytes = std::uint64_t{4} * ((std::uint64_t{1} << 31) + (std::uint64_t{1} << 28));
+constexpr std::uint64_t max_raw_bytes = 4 * (Map::max_fluctuations + Map::max_means);
 
 [[noreturn]] void corrupt(const char* what) { throw Error(FRM_ERROR_CORRUPT, "raw tables: %s", what); }
 
@@ -76,15 +75,8 @@ std::vector<std::uint8_t> encode_raw(const Map& map, const Tables& tables) {
     head.u32(0);
     head.u64(identity(map));
     head.u64(raw.size());
-    const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
-    if (!context) throw std::bad_alloc();
-    file.resize(header_bytes + ZSTD_compressBound(raw.size()));
-    ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, 19);
-    ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
-    const std::size_t size =
-        ZSTD_compress2(context.get(), file.data() + header_bytes, file.size() - header_bytes, raw.data(), raw.size());
-    if (ZSTD_isError(size)) throw Error(FRM_ERROR_INTERNAL, "zstd: %s", ZSTD_getErrorName(size));
-    file.resize(header_bytes + size);
+    const Bytes stored = compress(raw, 19);
+    head.bytes(stored.data(), stored.size());
     return file;
 }
 

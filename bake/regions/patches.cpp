@@ -255,6 +255,13 @@ private:
 
 }  // namespace
 
+Facet facet_of(const Surface& surface, std::size_t t) {
+    const Vec3d a = surface.corner(t, 0), b = surface.corner(t, 1), c = surface.corner(t, 2);
+    const Vec3d n = cross(b - a, c - a);
+    const double norm = length(n);
+    return {(a + b + c) / 3.0, norm > 0 ? n / norm : Vec3d{}, 0.5 * norm};
+}
+
 std::vector<std::uint32_t> split_patches(const std::vector<Facet>& facets, const Neighbours& neighbours,
                                          std::uint32_t count) {
     return Clustering(facets, neighbours, count).run();

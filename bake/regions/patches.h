@@ -15,6 +15,8 @@ struct Facet {
     double area = 0;  ///< m^2
 };
 
+Facet facet_of(const Surface& surface, std::size_t triangle);
+
 /// The patch of each facet, 0 <= patch < count, none empty and all connected. All facets must be connected by
 /// `neighbours`, and `count` be from 1 to their number.
 std::vector<std::uint32_t> split_patches(const std::vector<Facet>& facets, const Neighbours& neighbours,

@@ -13,13 +13,6 @@ namespace frm::bake {
 
 namespace {
 
-Facet facet_of(const Surface& surface, std::size_t t) {
-    const Vec3d a = surface.corner(t, 0), b = surface.corner(t, 1), c = surface.corner(t, 2);
-    const Vec3d n = cross(b - a, c - a);
-    const double norm = length(n);
-    return {(a + b + c) / 3.0, norm > 0 ? n / norm : Vec3d{}, 0.5 * norm};
-}
-
 // How many regions each shell gets: by area, at least one, never more than its triangles; largest remainders first.
 std::vector<std::uint32_t> share_out(const std::vector<double>& area, const std::vector<std::uint32_t>& triangles,
                                      std::uint32_t count) {

@@ -1,6 +1,5 @@
 #include "bake/tasks/plan_file.h"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "bake/tasks/result_file.h"
@@ -15,10 +14,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int version = 1;
 
-const char* word_of(Quality quality) {
-    return quality == Quality::draft ? "draft" : quality == Quality::high ? "high" : "standard";
-}
-
 /// All options but the mesh's folder and `threads`, which the map does not depend on. The list of names ends
 /// compilation when an option is added: it must join the others here and in options_of(), or two different bakes would
 /// share their results.
@@ -28,7 +23,7 @@ Json json_of(const BakeOptions& o) {
     static_cast<void>(threads);
     return {{"mesh", mesh.substr(mesh.find_last_of('/') + 1)},
             {"scale", scale},
-            {"quality", word_of(quality)},
+            {"quality", name_of(quality)},
             {"speed", speed},
             {"density", density},
             {"viscosity", viscosity},
@@ -49,9 +44,7 @@ BakeOptions options_of(const Json& j) {
     // A folder from elsewhere must not lead to files outside it.
     if (o.mesh.empty() || o.mesh == "." || o.mesh == ".." || o.mesh.find('/') != std::string::npos)
         throw BakeError("the mesh is not a file's name");
-    const std::string quality = j.at("quality").get<std::string>();
-    for (const Quality q : {Quality::draft, Quality::standard, Quality::high})
-        if (quality == word_of(q)) o.quality = q;
+    o.quality = quality_of(j.at("quality").get<std::string>());
     j.at("scale").get_to(o.scale);
     j.at("speed").get_to(o.speed);
     j.at("density").get_to(o.density);
@@ -70,12 +63,6 @@ BakeOptions options_of(const Json& j) {
     return o;
 }
 
-std::string hex(std::uint64_t value) {
-    char text[20];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-    return text;
-}
-
 }  // namespace
 
 std::string fingerprint_of(const BakePlan& plan) {
@@ -91,7 +78,7 @@ std::string fingerprint_of(const BakePlan& plan) {
     for (const double v : {plan.reference_length, plan.start_up, plan.period, plan.overlap}) w.f64(v);
     const std::uint64_t body = hash_of_body(plan.surface, plan.patches);
     for (const Task& task : plan.tasks) w.u64(key_of(body, task.flow));
-    return hex(fnv1a(bytes.data(), bytes.size()));
+    return hash_text(fnv1a(bytes.data(), bytes.size()));
 }
 
 std::string plan_text(const BakePlan& plan, const std::string& fingerprint, std::size_t tasks) {

@@ -8,6 +8,7 @@
 
 #include "bake/tasks/version.h"
 #include "core/map/bytes.h"
+#include "core/map/codec.h"
 #include "core/math/hash.h"
 
 namespace frm::bake {
@@ -121,19 +122,6 @@ Bytes contents(const TaskResult& result) {
     return raw;
 }
 
-Bytes compress(const Bytes& raw) {
-    ZSTD_CCtx* context = ZSTD_createCCtx();
-    if (!context) throw std::bad_alloc();
-    Bytes out(ZSTD_compressBound(raw.size()));
-    ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, 3);
-    ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
-    const std::size_t size = ZSTD_compress2(context, out.data(), out.size(), raw.data(), raw.size());
-    ZSTD_freeCCtx(context);
-    if (ZSTD_isError(size)) throw Error(FRM_ERROR_INTERNAL, "zstd: %s", ZSTD_getErrorName(size));
-    out.resize(size);
-    return out;
-}
-
 }  // namespace
 
 std::uint64_t hash_of_body(const Surface& surface, const Regions& patches) {
@@ -166,7 +154,7 @@ std::uint64_t key_of(std::uint64_t body, const FlowCase& flow_case) {
 
 std::vector<std::uint8_t> encode_result(const TaskResult& result, std::uint64_t key) {
     const Bytes raw = contents(result);
-    const Bytes stored = compress(raw);
+    const Bytes stored = compress(raw, 3);
     Bytes file;
     Writer w(file);
     w.bytes(magic, sizeof magic);

@@ -15,6 +15,8 @@ struct Task {
     TaskKind kind = TaskKind::stream;
     FlowCase flow;  ///< `threads` is set by who runs it
     FlowPlan cost;  ///< what it takes: cell updates, memory
+
+    bool is_stream(double speed) const { return kind == TaskKind::stream && flow.speed == speed; }
 };
 
 /// The forces on each patch of the plan. Its bits depend on the task, the surface and the patches alone.

@@ -20,6 +20,9 @@ std::vector<std::uint8_t> encode_map(const Map& map);
 /// naming the chunk.
 void decode_map(const std::uint8_t* data, std::size_t size, Map& map);
 
+/// A zstd frame that knows its contents' size and checksum.
+std::vector<std::uint8_t> compress(const std::vector<std::uint8_t>& raw, int level);
+
 namespace format {
 
 constexpr std::uint8_t magic[8] = {0x89, 'F', 'R', 'M', '\r', '\n', 0x1A, '\n'};

@@ -23,10 +23,6 @@ struct Chunk {
 
 /// A direction's fluctuations at the largest sizes that the format allows are the longest chunk.
 constexpr std::uint64_t max_raw_size = std::uint64_t{1} << 28;
-/// Of all directions together: 4 GiB in memory.
-constexpr std::uint64_t max_values = std::uint64_t{1} << 31;
-/// Numbers of all means together: 1 GiB in memory.
-constexpr std::uint64_t max_means = std::uint64_t{1} << 28;
 
 class Decoder {
 public:
@@ -231,7 +227,7 @@ private:
         if (seen_speed_[c.index]) corrupt(c, "comes twice");
         seen_speed_[c.index] = 1;
         const std::size_t sources = map_.sources.size(), count = map_.directions.count(), cells = count * sources;
-        if (std::uint64_t{cells} * Map::components * map_.speeds.size() > max_means)
+        if (std::uint64_t{cells} * Map::components * map_.speeds.size() > Map::max_means)
             corrupt(c, "is one of a set that is too large");
         const std::uint64_t plain = 8 + 24 * std::uint64_t{cells}, coded = 8 + 12 * std::uint64_t{cells};
         ByteReader r = open(c, c.raw_size == plain ? plain : coded);
@@ -293,7 +289,7 @@ private:
         if (seen_[c.index]) corrupt(c, "comes twice");
         const std::size_t sources = map_.sources.size(), samples = map_.samples, width = Map::components;
         const std::size_t count = sources * samples * width;
-        if (std::uint64_t{count} * directions > max_values) corrupt(c, "is one of a set that is too large");
+        if (std::uint64_t{count} * directions > Map::max_fluctuations) corrupt(c, "is one of a set that is too large");
         ByteReader r = open(c, 4 + 2 * std::uint64_t{count});
         if (map_.fluctuation.empty()) map_.fluctuation.resize(directions * count);
         map_.step[c.index] = r.f32();

@@ -11,22 +11,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes compress(const Bytes& raw) {
-    ZSTD_CCtx* context = ZSTD_createCCtx();
-    if (!context) throw std::bad_alloc();
-    Bytes out(ZSTD_compressBound(raw.size()));
-    ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, 19);
-    ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
-    ZSTD_CCtx_setParameter(context, ZSTD_c_contentSizeFlag, 1);
-    const std::size_t size = ZSTD_compress2(context, out.data(), out.size(), raw.data(), raw.size());
-    ZSTD_freeCCtx(context);
-    if (ZSTD_isError(size)) throw Error(FRM_ERROR_INTERNAL, "zstd: %s", ZSTD_getErrorName(size));
-    out.resize(size);
-    return out;
-}
-
 void append_chunk(Bytes& file, const char (&type)[5], std::uint32_t index, const Bytes& raw) {
-    const Bytes stored = compress(raw);
+    const Bytes stored = compress(raw, 19);
     ByteWriter<Bytes> w(file);
     w.bytes(type, 4);
     w.u32(index);
@@ -175,6 +161,19 @@ Bytes fluctuation_chunk(const Map& map, std::uint32_t direction) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> compress(const std::vector<std::uint8_t>& raw, int level) {
+    std::vector<std::uint8_t> out(ZSTD_compressBound(raw.size()));
+    ZSTD_CCtx* context = ZSTD_createCCtx();
+    if (!context) throw std::bad_alloc();
+    ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, level);
+    ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
+    const std::size_t size = ZSTD_compress2(context, out.data(), out.size(), raw.data(), raw.size());
+    ZSTD_freeCCtx(context);
+    if (ZSTD_isError(size)) throw Error(FRM_ERROR_INTERNAL, "zstd: %s", ZSTD_getErrorName(size));
+    out.resize(size);
+    return out;
+}
 
 std::vector<std::uint8_t> encode_map(const Map& map) {
     Bytes body;

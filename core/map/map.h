@@ -74,6 +74,8 @@ struct Map {
     static constexpr std::uint32_t max_samples = 4096;
     static constexpr std::uint32_t max_triangles = 1u << 21;
     static constexpr std::uint32_t max_speeds = 16;
+    static constexpr std::uint64_t max_means = std::uint64_t{1} << 28;         ///< numbers in all: 1 GiB in memory
+    static constexpr std::uint64_t max_fluctuations = std::uint64_t{1} << 31;  ///< numbers in all: 4 GiB in memory
 
     explicit Map(std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 

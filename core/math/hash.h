@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <string>
 
 namespace frm {
 
@@ -15,6 +17,13 @@ inline std::uint64_t fnv1a(const void* data, std::size_t size, std::uint64_t has
     const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * fnv_prime;
     return hash;
+}
+
+/// 16 hexadecimal digits.
+inline std::string hash_text(std::uint64_t hash) {
+    char text[20];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
 }
 
 /// Hashes values by their bits, so that -0 and 0 differ: what differs in bits may differ later in force.

@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import datetime
+import fcntl
 import hashlib
 import json
 import os
 import pathlib
 import subprocess
+import sys
 import time
 
 from flow_cases import mesh_of
@@ -39,6 +41,21 @@ def write_whole(path, content):
         file.flush()
         os.fsync(file.fileno())
     os.replace(part, path)
+
+
+def say(text):
+    print(f"[{datetime.datetime.now():%H:%M:%S}] {text}", flush=True)
+
+
+def lock(out, program):
+    """Makes the folder `out`; no other may work in it while the file that this returns is open."""
+    out.mkdir(parents=True, exist_ok=True)
+    file = open(out / "lock", "w")
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        sys.exit(f"{program}: another one is at work in {out}")
+    return file
 
 
 def machine():

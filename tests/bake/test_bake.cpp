@@ -2,7 +2,6 @@
 #include "bake/bake.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "bake/map/formula.h"
 #include "bake/tasks/forces.h"
@@ -10,6 +9,7 @@
 #include "core/map/codec.h"
 #include "core/map/lookup.h"
 #include "tests/support/catch.h"
+#include "tests/support/samples.h"
 #include "tests/support/shapes.h"
 
 using namespace frm;
@@ -19,7 +19,7 @@ namespace {
 
 BakeOptions small_bake() {
     BakeOptions o;
-    o.mesh = (std::filesystem::path(__FILE__).parent_path() / "../../samples/meshes/box.glb").string();
+    o.mesh = test::sample_path("box.glb");
     o.quality = Quality::draft;
     o.directions = 6;
     o.sources = 6;
@@ -168,7 +168,7 @@ TEST_CASE("torques are fitted about the centroid with symmetry or without", "[ba
     const Vec3d centre = plan_bake(options).symmetry.centre;
     options.symmetry = false;
     CHECK(length(plan_bake(options).symmetry.centre - centre) < 1e-9);
-    options.mesh = (std::filesystem::path(__FILE__).parent_path() / "../../samples/meshes/paddle.glb").string();
+    options.mesh = test::sample_path("paddle.glb");
     const BakePlan plan = plan_bake(options);
     CHECK(length(plan.symmetry.centre) > 0.1);  // the frame is that of the hand
     CHECK(length(plan.symmetry.centre - measure(plan.surface).centroid) < 1e-6);

@@ -182,7 +182,7 @@ TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'"
     const DirectionSet set(1), dense(2);
     std::vector<TaskResult> flows;
     std::vector<FlowMeans> means;
-    std::vector<Vec3d> directions;
+    std::vector<SolvedDirection> solved;
     const std::uint32_t period = 64;
     for (std::uint32_t d = 0; d < set.count(); ++d) {
         TaskResult r;
@@ -202,13 +202,14 @@ TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'"
         r.torque.assign(std::size_t{r.samples} * 3, 0);
         flows.push_back(r);
         means.push_back(means_of(flows.back()));
-        directions.push_back(set.direction(d));
+        solved.push_back(solved_direction(set.direction(d), means.back(), {}));
     }
     const Landing landing(box, 1e-6);
-    const RegionForces forces({box, regions, regions, {}, landing}, none, means, directions, 0.2, spacing_of(1));
+    Transfers transfers({box, regions, regions, {}, landing});
+    const RegionForces forces(transfers, none, means, solved, 0.2, spacing_of(1));
     std::vector<const TaskResult*> results;
     for (const TaskResult& r : flows) results.push_back(&r);
-    const FluctuationSpec spec{period, 32, 8, 0};
+    const PeriodicSpec spec{period, 32, 8, 0};
     const std::vector<Fluctuation> out = fluctuations(forces, results, 6, dense, spec);
     for (std::uint32_t d = 0; d < dense.count(); ++d) {
         double largest[2] = {};

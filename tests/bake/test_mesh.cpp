@@ -14,6 +14,7 @@
 #include "bake/mesh/roundness.h"
 #include "bake/mesh/surface.h"
 #include "tests/support/catch.h"
+#include "tests/support/samples.h"
 #include "tests/support/shapes.h"
 
 using namespace frm;
@@ -563,8 +564,6 @@ TEST_CASE("what cannot be baked is refused", "[repair]") {
 }
 
 TEST_CASE("the sample meshes need no repair", "[mesh][samples]") {
-    const std::filesystem::path samples =
-        std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "samples" / "meshes";
     struct Sample {
         const char* name;
         double volume, tolerance;
@@ -575,12 +574,12 @@ TEST_CASE("the sample meshes need no repair", "[mesh][samples]") {
                             {"paddle", 0.00155, 0.05},
                             {"canoe", 0.161, 0.05}}) {
         INFO(s.name);
-        const Repaired r = repair(load_gltf((samples / (std::string(s.name) + ".glb")).string()), s.name);
+        const Repaired r = repair(load_gltf(test::sample_path(std::string(s.name) + ".glb")), s.name);
         CHECK(r.notes.empty());
         CHECK(r.shells == 1);
         CHECK(measure(r.surface).volume == Approx(s.volume).epsilon(s.tolerance));
     }
-    const Surface paddle = load_gltf((samples / "paddle.glb").string());
+    const Surface paddle = load_gltf(test::sample_path("paddle.glb"));
     const SurfaceProperties p = measure(paddle);
     CHECK(p.high.z - p.low.z == Approx(1.4).epsilon(0.02));
     CHECK(p.high.x - p.low.x == Approx(0.2).epsilon(0.01));

@@ -1,27 +1,19 @@
 // The error of regions is what a force worked out triangle by triangle says, and the count that is chosen keeps it.
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
-#include "bake/mesh/gltf.h"
-#include "bake/mesh/repair.h"
 #include "bake/regions/choose.h"
 #include "bake/regions/regions.h"
 #include "bake/regions/tessellate.h"
 #include "tests/support/catch.h"
+#include "tests/support/samples.h"
 #include "tests/support/shapes.h"
 
 using namespace frm;
 using namespace frm::bake;
 
 namespace {
-
-Surface sample(const std::string& name) {
-    const std::filesystem::path samples =
-        std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "samples" / "meshes";
-    return repair(load_gltf((samples / name).string()), name).surface;
-}
 
 // The regions of a surface on a finer one that was cut from it.
 Regions carried(const Regions& regions, const Tessellation& finer) {
@@ -50,7 +42,7 @@ TEST_CASE("a region a triangle makes no error, one region nearly all", "[region_
 }
 
 TEST_CASE("errors of regions do not hang on place, turn or size, nor on the triangles below", "[region_error]") {
-    const Surface plate = sample_triangles(sample("plate.glb"));
+    const Surface plate = sample_triangles(test::sample("plate.glb"));
     const Regions regions = split_regions(plate, 40);
     const RegionErrors errors = RegionJudge(plate).measure(regions);
 
@@ -90,7 +82,7 @@ TEST_CASE("only what varies over a region makes an error", "[region_error]") {
 
 TEST_CASE("as many regions are chosen as the budget takes, and hardly more", "[region_error]") {
     for (const char* name : {"paddle.glb", "plate.glb", "box.glb", "canoe.glb", "sphere.glb"}) {
-        const Surface s = sample_triangles(sample(name));
+        const Surface s = sample_triangles(test::sample(name));
         std::uint32_t before = 0;
         for (const double error : {kDraftRegionError, kStandardRegionError, kHighRegionError}) {
             RegionBudget budget;
@@ -137,7 +129,7 @@ TEST_CASE("a budget that cannot be kept gives what there is, and says so", "[reg
 
 TEST_CASE("regions are chosen in the time that a user does not notice", "[region_error]") {
     // 0.2 to 1 s on a busy core; the bound catches what has become quadratic.
-    const Surface s = sample_triangles(sample("canoe.glb"));
+    const Surface s = sample_triangles(test::sample("canoe.glb"));
     const auto begin = std::chrono::steady_clock::now();
     choose_regions(s, {kHighRegionError, 6, 4096});
     CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 10);

@@ -1,28 +1,20 @@
 // Tessellation keeps the shape and has no cracks; regions are a partition into connected, similar patches.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 #include <vector>
 
 #include "bake/mesh/adjacency.h"
-#include "bake/mesh/gltf.h"
-#include "bake/mesh/repair.h"
 #include "bake/regions/regions.h"
 #include "bake/regions/tessellate.h"
 #include "tests/support/catch.h"
+#include "tests/support/samples.h"
 #include "tests/support/shapes.h"
 
 using namespace frm;
 using namespace frm::bake;
 
 namespace {
-
-Surface sample(const char* name) {
-    const std::filesystem::path samples =
-        std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "samples" / "meshes";
-    return repair(load_gltf((samples / name).string()), name).surface;
-}
 
 // So fine that a region has about forty triangles.
 Surface fine_enough(const Surface& surface, std::uint32_t regions) {
@@ -88,7 +80,7 @@ TEST_CASE("tessellation keeps the shape and stays closed", "[tessellate]") {
     for (const Case& c : {Case{test::box({0.4, 0.3, 0.2}), 0.03},
                           {test::cylinder(0.02, 1, 24), 0.02},
                           {test::icosphere(1, 2), 0.1},
-                          {sample("paddle.glb"), 0.012},
+                          {test::sample("paddle.glb"), 0.012},
                           {test::box({1, 1, 0.001}), 0.05}}) {
         const Tessellation fine = tessellate(c.surface, c.edge, 1000000);
         const SurfaceProperties before = measure(c.surface), after = measure(fine.surface);
@@ -134,9 +126,9 @@ TEST_CASE("regions are connected, as many as asked for, and of similar area", "[
         INFO(count);
         check_partition(fine_enough(test::icosphere(0.05, 2), count), count, 1.5);
         check_partition(fine_enough(test::box({0.4, 0.3, 0.2}), count), count, 2);
-        check_partition(fine_enough(sample("paddle.glb"), count), count, 3);
+        check_partition(fine_enough(test::sample("paddle.glb"), count), count, 3);
     }
-    check_partition(fine_enough(sample("canoe.glb"), 60), 60, 5);
+    check_partition(fine_enough(test::sample("canoe.glb"), 60), 60, 5);
     check_partition(fine_enough(test::cylinder(0.015, 0.5, 32), 30), 30, 2.5);
 }
 
@@ -169,7 +161,7 @@ TEST_CASE("front and back of a thin blade are never one region", "[regions]") {
         INFO(count);
         CHECK(mixed(fine_enough(test::box({0.08, 0.01, 0.3}), count), count, 1) == 0);
     }
-    const Surface paddle = sample("paddle.glb");
+    const Surface paddle = test::sample("paddle.glb");
     for (const std::uint32_t count : {8u, 12u, 20u, 40u, 100u}) {
         INFO(count);
         CHECK(mixed(fine_enough(paddle, count), count, -0.5) == 0);
@@ -188,7 +180,7 @@ TEST_CASE("regions of several shells", "[regions]") {
 }
 
 TEST_CASE("the same regions every time; refusals", "[regions]") {
-    const Surface paddle = sample("paddle.glb");
+    const Surface paddle = test::sample("paddle.glb");
     CHECK(split_regions(paddle, 50).region == split_regions(paddle, 50).region);
 
     const Surface box = test::box({1, 1, 1});

@@ -3,28 +3,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "bake/mesh/gltf.h"
-#include "bake/mesh/repair.h"
 #include "bake/mesh/tree.h"
 #include "bake/regions/tessellate.h"
 #include "bake/symmetry/symmetry.h"
 #include "tests/support/catch.h"
+#include "tests/support/samples.h"
 #include "tests/support/shapes.h"
 
 using namespace frm;
 using namespace frm::bake;
 
 namespace {
-
-Surface sample(const std::string& name) {
-    const std::filesystem::path samples =
-        std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "samples" / "meshes";
-    return repair(load_gltf((samples / name).string()), name).surface;
-}
 
 Surface tetrahedron() {
     Surface s;
@@ -212,9 +204,9 @@ TEST_CASE("finite symmetries have all their elements, wherever the body lies", "
         // A half turn about each axis is lost but that across the plane of the shift; with it the inversion.
         check_finite(test::joined(test::moved(test::box({0.4, 0.3, 0.2}), {1, 0.5, 0}), test::box({0.4, 0.3, 0.2})), 4);
     }
-    SECTION("paddle") { check_finite(sample("paddle.glb"), 4); }
-    SECTION("canoe") { check_finite(sample("canoe.glb"), 4); }
-    SECTION("sample plate") { check_finite(sample("plate.glb"), 8); }
+    SECTION("paddle") { check_finite(test::sample("paddle.glb"), 4); }
+    SECTION("canoe") { check_finite(test::sample("canoe.glb"), 4); }
+    SECTION("sample plate") { check_finite(test::sample("plate.glb"), 8); }
 }
 
 TEST_CASE("round bodies are known although they are made of flat facets", "[symmetry]") {
@@ -283,7 +275,7 @@ TEST_CASE("symmetry of large meshes is found in the time of a look", "[symmetry]
     };
     CHECK(seconds(test::icosphere(1, 5)) < 5);
     CHECK(seconds(tessellate(test::box({1, 1, 1}), 0.02, 20000).surface) < 10);
-    CHECK(seconds(tessellate(sample("paddle.glb"), 1e-4, 200000).surface) < 10);
+    CHECK(seconds(tessellate(test::sample("paddle.glb"), 1e-4, 200000).surface) < 10);
     // Rough by as much as a chord may be: anything might be an axis, and nothing is. 1.1 s; 7 s without early ends.
     Surface rough = test::icosphere(1, 5);
     for (std::size_t i = 0; i < rough.vertices.size(); ++i)

@@ -22,6 +22,7 @@
 #include "core/map/codec.h"
 #include "core/math/hash.h"
 #include "tests/support/catch.h"
+#include "tests/support/samples.h"
 
 using namespace frm;
 using namespace frm::bake;
@@ -46,7 +47,7 @@ std::set<std::string> names(const std::string& folder) {
 
 BakeOptions small_bake() {
     BakeOptions o;
-    o.mesh = (fs::path(__FILE__).parent_path() / "../../samples/meshes/box.glb").string();
+    o.mesh = test::sample_path("box.glb");
     o.quality = Quality::draft;
     o.symmetry = false;  // six flows, then
     o.directions = 6;

@@ -22,11 +22,10 @@ bake.f32   little-endian 32-bit floats, where an "offset" and a "shape" in bake.
 """
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 
-from .report import run_program, write_whole
+from .report import run_folder_program, write_whole
 
 
 def write_report(folder, output=None) -> None:
@@ -38,11 +37,7 @@ def write_report(folder, output=None) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="frm.bake_report", description="Shows a bake as one page.")
-    parser.add_argument("folder", metavar="DIR", help="what `frm bake --report` wrote")
-    parser.add_argument("-o", "--output", metavar="FILE", help="the page to write (default: DIR/report.html)")
-    options = parser.parse_args(arguments)
-    return run_program("frm.bake_report", options.folder, lambda: write_report(options.folder, options.output))
+    return run_folder_program("bake", write_report, arguments)
 
 
 if __name__ == "__main__":

@@ -13,11 +13,10 @@ slices.f32  little-endian 32-bit floats. A slice is "rows" times "columns" speed
 """
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 
-from .report import run_program, write_whole
+from .report import run_folder_program, write_whole
 
 
 def write_report(folder, output=None) -> None:
@@ -29,11 +28,7 @@ def write_report(folder, output=None) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="frm.flow_report", description="Shows a flow as one page.")
-    parser.add_argument("folder", metavar="DIR", help="what `frm flow --report` wrote")
-    parser.add_argument("-o", "--output", metavar="FILE", help="the page to write (default: DIR/report.html)")
-    options = parser.parse_args(arguments)
-    return run_program("frm.flow_report", options.folder, lambda: write_report(options.folder, options.output))
+    return run_folder_program("flow", write_report, arguments)
 
 
 if __name__ == "__main__":

@@ -84,6 +84,15 @@ def run_program(name: str, output, draw) -> int:
     return 0
 
 
+def run_folder_program(kind: str, write, arguments: list[str] | None) -> int:
+    """The program of a page about a folder that `frm KIND --report` left."""
+    parser = argparse.ArgumentParser(prog=f"frm.{kind}_report", description=f"Shows a {kind} as one page.")
+    parser.add_argument("folder", metavar="DIR", help=f"what `frm {kind} --report` wrote")
+    parser.add_argument("-o", "--output", metavar="FILE", help="the page to write (default: DIR/report.html)")
+    options = parser.parse_args(arguments)
+    return run_program(parser.prog, options.folder, lambda: write(options.folder, options.output))
+
+
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="frm.report",
                                      description="Replays a recording and shows it as one page.")
