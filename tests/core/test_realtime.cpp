@@ -1,0 +1,118 @@
+// What the header tags [realtime] takes no lock and calls no system: every lock of this program is counted, and a process
+// that may not call the system ticks on. (That it allocates nothing: test_allocation.cpp.)
+#include <dlfcn.h>
+#include <linux/seccomp.h>
+#include <pthread.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "tests/support/library.h"
+
+namespace {
+
+std::atomic<std::size_t> locks{0};
+
+template <typename Function>
+Function* next_one(const char* name) {
+    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) {
+    static auto* const real = next_one<int(pthread_mutex_t*)>("pthread_mutex_lock");
+    ++locks;
+    return real(mutex);
+}
+extern "C" int pthread_rwlock_rdlock(pthread_rwlock_t* lock) {
+    static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
+    ++locks;
+    return real(lock);
+}
+extern "C" int pthread_rwlock_wrlock(pthread_rwlock_t* lock) {
+    static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_wrlock");
+    ++locks;
+    return real(lock);
+}
+
+namespace {
+
+/// A body that goes in and out of the water, turning, and one that stays in it.
+class Scene {
+public:
+    Scene() {
+        REQUIRE(frm_world_create(library_.context, nullptr, &world_) == FRM_OK);
+        frm_water water = 0;
+        frm_water_def water_def;
+        REQUIRE(frm_water_def_init(&water_def, sizeof water_def) == FRM_OK);
+        water_def.nx = water_def.ny = 100;
+        REQUIRE(frm_water_create(world_, &water_def, &water) == FRM_OK);
+        frm_body_def def;
+        REQUIRE(frm_body_def_init(&def, sizeof def) == FRM_OK);
+        def.map = library_.map();
+        def.mass = 1;
+        for (frm_body& body : bodies_) REQUIRE(frm_body_create(world_, &def, &body) == FRM_OK);
+    }
+
+    /// False if a call failed.
+    bool tick() {
+        const double phase = 0.02 * ++ticks_;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const frm_pose pose{
+                {0.5 * std::sin(phase), 0.3 * static_cast<double>(i), i ? -0.05 : 0.5 * std::cos(phase)},
+                {static_cast<float>(std::sin(phase)), 0, 0, static_cast<float>(std::cos(phase))}};
+            const frm_twist twist{{1, 0, -1}, {2, 0, 0}};
+            if (frm_body_set_motion(bodies_[i], &pose, &twist)) return false;
+        }
+        frm_forces forces{};
+        forces.struct_size = sizeof forces;
+        frm_world_stats stats{};
+        stats.struct_size = sizeof stats;
+        return !frm_world_tick(world_, 0.002f) && !frm_body_get_forces(bodies_[0], &forces) &&
+               !frm_world_get_stats(world_, &stats);
+    }
+
+private:
+    frm::test::Library library_;
+    frm_world world_ = 0;
+    frm_body bodies_[2] = {};
+    int ticks_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a tick takes no lock", "[realtime]") {
+    Scene scene;
+    REQUIRE(scene.tick());
+    pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    const std::size_t before = locks.load();
+    pthread_mutex_lock(&mutex);  // the counter counts
+    pthread_mutex_unlock(&mutex);
+    REQUIRE(locks.load() == before + 1);
+    for (int t = 0; t < 500; ++t) REQUIRE(scene.tick());
+    CHECK(locks.load() == before + 1);
+}
+
+TEST_CASE("a tick calls no system", "[realtime]") {
+    Scene scene;
+    for (int t = 0; t < 20; ++t) REQUIRE(scene.tick());
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        // From here on the kernel kills what calls it for anything but read, write and exit.
+        bool good = prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) == 0;
+        for (int t = 0; good && t < 500; ++t) good = scene.tick();
+        syscall(SYS_exit, good ? 0 : 1);
+    }
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    INFO((WIFSIGNALED(status) ? "killed for a system call, signal " : "exit status ")
+         << (WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status)));
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+}
