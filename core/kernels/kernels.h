@@ -34,6 +34,12 @@ struct WaveRow4 {
     bool wall_left, wall_right;
 };
 
+/// What the absorbing layer keeps at both ends of a row, in whole 64-byte vectors: 1 where the layer is not.
+struct WaveDamp {
+    const float *cells_left, *cells_right, *faces_left, *faces_right;
+    std::ptrdiff_t left, right_at, right;  ///< floats, multiples of 16
+};
+
 struct Kernels {
     const char* instructions;  ///< "baseline", "avx2" or "avx512"
 
@@ -51,7 +57,8 @@ struct Kernels {
     /// u[i] += factor (p[i] - p[i - behind]).
     void (*wave_push)(float* u, const float* p, std::ptrdiff_t behind, std::ptrdiff_t count, float factor);
     void (*scale)(float* x, std::ptrdiff_t count, float factor);
-    void (*scale_each)(float* x, const float* factors, std::ptrdiff_t count);
+    /// The columns of the absorbing layer in a row of heights, of velocity_x and of velocity_y; each may be null.
+    void (*wave_damp)(float* h, float* u, float* v, const WaveDamp& damp);
 };
 
 /// The best for this machine; the same on every call.

@@ -20,6 +20,6 @@ const Kernels kernels{
     wave_outflow,
     wave_push,
     scale,
-    scale_each,
+    wave_damp,
 };
 }  // namespace frm::FRM_KERNEL_SET

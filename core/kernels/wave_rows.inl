@@ -6,7 +6,8 @@ static inline Lanes moved_across(Lanes v, Lanes h, Lanes below, float f) { retur
 // The velocities of a vector are needed at its right end by the heights of the vector before it: heights lag one vector
 // behind, and what both need stays in registers. Each array is read and written once.
 template <bool moves_above>
-static inline void step_row(const WaveRow& r, float f, float g) {
+static inline void step_row(const WaveRow& row, float f, float g) {
+    const WaveRow r = row;  // a copy that no store can change
     float* const h = r.height;
     float* const u = r.velocity_x;
     const std::ptrdiff_t whole = (r.count + FRM_LANES - 1) / FRM_LANES * FRM_LANES;
@@ -33,7 +34,7 @@ static inline void step_row(const WaveRow& r, float f, float g) {
     if (valid < FRM_LANES) face = with_lane(first_lanes(face, valid), valid, r.right);
     store(u + i, face);
     heights(i, with_lane(Lanes{}, 0, r.right), valid);
-    u[r.count] = r.right;
+    if (valid == FRM_LANES) u[r.count] = r.right;
 }
 
 static void wave_row(const WaveRow& r, float f, float g) {
@@ -45,7 +46,8 @@ static void wave_row(const WaveRow& r, float f, float g) {
 
 // The same at fourth order: differences (27 d1 - d3) / 24, whose two weights are in f1, f3 and g1, g3.
 template <bool moves_above>
-static inline void step_row_4(const WaveRow4& r, float f1, float f3, float g1, float g3) {
+static inline void step_row_4(const WaveRow4& row, float f1, float f3, float g1, float g3) {
+    const WaveRow4 r = row;
     float* const h = r.height;
     float* const u = r.velocity_x;
     const std::ptrdiff_t n = r.count, whole = (n + FRM_LANES - 1) / FRM_LANES * FRM_LANES, last = whole - FRM_LANES;
@@ -138,6 +140,15 @@ static void scale(float* __restrict x, std::ptrdiff_t count, float factor) {
     for (std::ptrdiff_t i = 0; i < count; ++i) x[i] *= factor;
 }
 
-static void scale_each(float* __restrict x, const float* __restrict factors, std::ptrdiff_t count) {
-    for (std::ptrdiff_t i = 0; i < count; ++i) x[i] *= factors[i];
+static inline void scale_ends(float* x, const float* left, const float* right, const WaveDamp& d) {
+    for (std::ptrdiff_t i = 0; i < d.left; i += FRM_LANES) store(x + i, load(x + i) * load(left + i));
+    for (std::ptrdiff_t i = 0; i < d.right; i += FRM_LANES)
+        store(x + d.right_at + i, load(x + d.right_at + i) * load(right + i));
+}
+
+static void wave_damp(float* h, float* u, float* v, const WaveDamp& damp) {
+    const WaveDamp d = damp;
+    if (h) scale_ends(h, d.cells_left, d.cells_right, d);
+    if (u) scale_ends(u, d.faces_left, d.faces_right, d);
+    if (v) scale_ends(v, d.cells_left, d.cells_right, d);
 }

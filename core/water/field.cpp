@@ -30,7 +30,8 @@ float bilinear(const float* data, std::int32_t nx, std::int32_t ny, std::ptrdiff
     return low + t * (high - low);
 }
 
-constexpr std::int32_t vector = 16;  // floats in 64 bytes
+constexpr std::int32_t vector = 16;     ///< floats in 64 bytes
+constexpr std::int32_t keep_room = 64;  ///< the widest layer
 
 /// Two cells beyond the last face, and a vector before the first; rows a page apart would all want the same cache sets.
 std::ptrdiff_t stride_for(std::int32_t nx) {
@@ -50,13 +51,26 @@ Field::Field(const FieldDef& def, std::pmr::memory_resource* memory)
     : def_(def),
       stride_(stride_for(def.nx)),
       memory_(static_cast<std::size_t>(3 * plane_for(def.ny, stride_) + 3 * vector), 0.0f, memory),
-      keep_(static_cast<std::size_t>(4 * def.border_cells), 1.0f, memory) {
+      keep_(static_cast<std::size_t>(2 * keep_room + 2 * (2 * keep_room + 2 * vector) + vector), 1.0f, memory) {
     void* begin = memory_.data();
     std::size_t room = memory_.size() * sizeof(float);
     const std::ptrdiff_t plane = plane_for(def.ny, stride_);
     height_ = static_cast<float*>(std::align(64, 64, begin, room)) + stride_ + vector;
     u_ = height_ + plane;
     v_ = u_ + plane;
+
+    // Whole vectors that hold the layer at the left end, and at the right end with the last face.
+    const std::int32_t width = def.border_cells;
+    damp_.left = (width + vector - 1) / vector * vector;
+    damp_.right_at = (def.nx - width) / vector * vector;
+    damp_.right = (def.nx + vector) / vector * vector - damp_.right_at;
+    begin = keep_.data() + 2 * keep_room;
+    room = keep_.size() * sizeof(float);
+    float* const ends = static_cast<float*>(std::align(64, 64, begin, room));
+    damp_.cells_left = ends;
+    damp_.faces_left = ends + keep_room;
+    damp_.cells_right = damp_.faces_left + keep_room;
+    damp_.faces_right = damp_.cells_right + keep_room + 2 * vector;
 }
 
 float Field::stable_step(const FieldDef& def, float gravity) {

@@ -5,6 +5,7 @@
 #include <memory_resource>
 #include <vector>
 
+#include "core/kernels/kernels.h"
 #include "core/math/hash.h"
 
 namespace frm {
@@ -118,9 +119,9 @@ private:
     std::ptrdiff_t stride_;
     std::pmr::vector<float> memory_;
     float *height_, *u_, *v_;  ///< row 0, column 0; v_ also has rows -1 and ny + 1
-    /// What the absorbing layer keeps of each of its cells in a step, and of its faces, from the border inwards; and
-    /// the same backwards.
+    /// What the absorbing layer keeps in a step: of cells and of faces, from the border inwards; then damp_'s.
     std::pmr::vector<float> keep_;
+    WaveDamp damp_{};
     float keeps_for_ = 0;  ///< the dt of keep_ times the waves' speed, m
 };
 

@@ -8,6 +8,7 @@ namespace {
 
 /// Below this many cells the threads cost more than they bring (measured with `frm bench`).
 constexpr std::size_t threaded_cells = std::size_t{1} << 18;
+constexpr std::int32_t layer_room = 64;
 constexpr std::int32_t rows_a_band = 16;  ///< at least
 /// Rows of that many steps, less than a megabyte for 2048 columns, stay in the second-level cache.
 constexpr std::uint32_t steps_together = 8;
@@ -73,14 +74,19 @@ WaveStep::WaveStep(Field& field, float dt, float gravity, const Push* pushes, st
     const std::int32_t width = def.border_cells;
     const float rate = 7.5f * speed / (static_cast<float>(width) * def.cell);
     float* const cells = field.keep_.data();
-    float* const faces = cells + 2 * width;
+    float* const faces = cells + layer_room;
+    float* const ends = faces + layer_room;
+    const auto end = [&](const float* of) { return ends + (of - ends); };
     for (std::int32_t k = 0; k < width; ++k) {
         const auto keep = [&](float distance) {
             const float x = 1.0f - distance / static_cast<float>(width);
             return x > 0 ? 1.0f / (1.0f + dt * rate * x * x) : 1.0f;
         };
-        cells[k] = cells[2 * width - 1 - k] = keep(static_cast<float>(k) + 0.5f);
-        faces[k] = faces[2 * width - 1 - k] = keep(static_cast<float>(k));
+        const std::ptrdiff_t mirror = def.nx - 1 - k - field.damp_.right_at;
+        cells[k] = end(field.damp_.cells_left)[k] = end(field.damp_.cells_right)[mirror] =
+            keep(static_cast<float>(k) + 0.5f);
+        faces[k] = end(field.damp_.faces_left)[k] = end(field.damp_.faces_right)[mirror + 1] =
+            keep(static_cast<float>(k));
     }
 }
 
@@ -139,10 +145,22 @@ void WaveStep::row(std::int32_t r, const Own& own) {
     if (fourth_ && r == def.ny - 1) mirror_faces(field_, def.ny + 1, def.ny, def.ny - 1);
     move_row(r, 0, def.nx, with_faces);
     if (!damps_) return;
-    damp_row(r);
-    const auto damp_own = [&](std::int32_t face) {
-        if (face >= own.damp_begin && face < own.damp_end) damp_faces(face);
+    const auto own_faces = [&](std::int32_t face) {
+        return face >= own.damp_begin && face < own.damp_end ? field_.velocity_y_row(face) : nullptr;
     };
+    const auto damp_own = [&](std::int32_t face) {
+        if (own_faces(face)) damp_faces(face);
+    };
+    const bool border_row = std::min(r, def.ny - 1 - r) < def.border_cells;
+    if (!border_row) {
+        const std::int32_t done = fourth_ ? r - 1 : r;
+        kernel_.wave_damp(field_.height_row(r), field_.velocity_x_row(r), own_faces(done), field_.damp_);
+        return;
+    }
+    const float across = field_.keep_[static_cast<std::size_t>(std::min(r, def.ny - 1 - r))];
+    kernel_.scale(field_.height_row(r), def.nx, across);
+    kernel_.scale(field_.velocity_x_row(r), def.nx + 1, across);
+    kernel_.wave_damp(field_.height_row(r), field_.velocity_x_row(r), nullptr, field_.damp_);
     if (fourth_ && r > 0) damp_own(r - 1);
     if (!fourth_ || r == def.ny - 1) damp_own(r);
     if (r == def.ny - 1) damp_own(r + 1);
@@ -186,30 +204,13 @@ void WaveStep::faces(std::int32_t m) {
     if (m == 1) mirror_faces(field_, -1, 0, 1);
 }
 
-void WaveStep::damp_row(std::int32_t r) {
-    const std::int32_t nx = field_.def_.nx, ny = field_.def_.ny;
-    const float *cells = field_.keep_.data(), *faces = cells + 2 * field_.def_.border_cells;
-    const float across = keep_of_row(cells, r, ny);
-    damp(field_.height_row(r), nx, cells, across);
-    damp(field_.velocity_x_row(r), nx + 1, faces, across);
-}
-
 void WaveStep::damp_faces(std::int32_t m) {
     if (!damps_) return;
-    const float *cells = field_.keep_.data(), *faces = cells + 2 * field_.def_.border_cells;
-    damp(field_.velocity_y_row(m), field_.def_.nx, cells, keep_of_row(faces, m, field_.def_.ny + 1));
-}
-
-float WaveStep::keep_of_row(const float* keep, std::int32_t j, std::int32_t rows) const {
-    const std::int32_t from_border = std::min(j, rows - 1 - j);
-    return from_border < field_.def_.border_cells ? keep[from_border] : 1.0f;
-}
-
-void WaveStep::damp(float* x, std::int32_t columns, const float* keep, float across) {
-    const std::int32_t width = field_.def_.border_cells;
-    if (across != 1.0f) kernel_.scale(x, columns, across);
-    kernel_.scale_each(x, keep, width);
-    kernel_.scale_each(x + columns - width, keep + width, width);
+    const FieldDef& def = field_.def_;
+    const std::int32_t from_border = std::min(m, def.ny - m);
+    if (from_border < def.border_cells)
+        kernel_.scale(field_.velocity_y_row(m), def.nx, field_.keep_[static_cast<std::size_t>(layer_room + from_border)]);
+    kernel_.wave_damp(nullptr, nullptr, field_.velocity_y_row(m), field_.damp_);
 }
 
 void Field::advance(float dt, float gravity, std::uint32_t steps, const Push* pushes, std::size_t push_count,

@@ -29,10 +29,7 @@ private:
     void row(std::int32_t r, const Own& own);
     void move_row(std::int32_t r, std::int32_t i0, std::int32_t i1, bool with_faces);
     void faces(std::int32_t m);
-    void damp_row(std::int32_t r);
     void damp_faces(std::int32_t m);
-    float keep_of_row(const float* keep, std::int32_t j, std::int32_t rows) const;
-    void damp(float* x, std::int32_t columns, const float* keep, float across);
 
     Field& field_;
     const Kernels& kernel_;
