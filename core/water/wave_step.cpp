@@ -136,14 +136,10 @@ void WaveStep::together(std::uint32_t steps) {
 void WaveStep::row(std::int32_t r, const Own& own) {
     const FieldDef& def = field_.def_;
     const std::int32_t m = r + lead();
-    const bool with_faces = m < std::min(def.ny, own.faces_end);
-    for (std::size_t k = 0; k < push_count_; ++k) {
-        push_cells_row(field_, pushes_[k], r);
-        if (with_faces) push_faces_row(field_, pushes_[k], m);
-    }
+    if (push_count_ > 0) push_rows(r, m < std::min(def.ny, own.faces_end) ? m : 0);
     if (m == def.ny && m < own.faces_end) faces(m);
     if (fourth_ && r == def.ny - 1) mirror_faces(field_, def.ny + 1, def.ny, def.ny - 1);
-    move_row(r, 0, def.nx, with_faces);
+    move_row(r, 0, def.nx, m < std::min(def.ny, own.faces_end));
     if (!damps_) return;
     const auto own_faces = [&](std::int32_t face) {
         return face >= own.damp_begin && face < own.damp_end ? field_.velocity_y_row(face) : nullptr;
@@ -164,6 +160,13 @@ void WaveStep::row(std::int32_t r, const Own& own) {
     if (fourth_ && r > 0) damp_own(r - 1);
     if (!fourth_ || r == def.ny - 1) damp_own(r);
     if (r == def.ny - 1) damp_own(r + 1);
+}
+
+void WaveStep::push_rows(std::int32_t r, std::int32_t m) {
+    for (std::size_t k = 0; k < push_count_; ++k) {
+        push_cells_row(field_, pushes_[k], r);
+        push_faces_row(field_, pushes_[k], m);
+    }
 }
 
 void WaveStep::move_row(std::int32_t r, std::int32_t i0, std::int32_t i1, bool with_faces) {

@@ -28,6 +28,8 @@ private:
 
     void row(std::int32_t r, const Own& own);
     void move_row(std::int32_t r, std::int32_t i0, std::int32_t i1, bool with_faces);
+    /// Of the cells of row r and of the faces m; face 0 is never pushed.
+    void push_rows(std::int32_t r, std::int32_t m);
     void faces(std::int32_t m);
     void damp_faces(std::int32_t m);
 
