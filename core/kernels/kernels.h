@@ -4,44 +4,40 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace frm {
 
-/// One row of cells of the wave field, from a column that is a multiple of 32 on: pointers to that column, 64-byte
-/// aligned, of arrays that are readable a vector (16 floats) to either side. Face i lies left of cell i.
-struct WaveRow {
-    float* height;
-    float* velocity_x;          ///< count + 1 faces
-    const float* below;         ///< velocity_y between this row and the one below
-    float* above;               ///< velocity_y between this row and the one above
-    const float* height_above;  ///< null: `above` has been moved already
-    std::ptrdiff_t count;
-    float left, right;  ///< the velocity at a wall's face, and that of face `count`
-    bool wall_left;     ///< face 0 is a wall's
+/// What the absorbing layer keeps at both ends of a row, in whole 64-byte vectors: 1 where the layer is not.
+struct WaveDamp {
+    const float *cells_left, *cells_right, *faces_left, *faces_right;
+    std::ptrdiff_t left, right_at, right;  ///< floats, multiples of 16
 };
 
-/// The same at fourth order, which reaches one row further to each side.
-struct WaveRow4 {
-    float* height;
-    float* velocity_x;
-    const float* below;                           ///< velocity_y one row further below
-    const float* velocity_y;                      ///< between this row and the one below
-    const float* above;                           ///< between this row and the one above
-    float* above_2;                               ///< one row further above
-    const float *height_1, *height_2, *height_3;  ///< the rows above; height_3 null: `above_2` has been moved already
-    std::ptrdiff_t count;
-    float left, right;
-    bool wall_left, wall_right;
+/// Rows of cells of the wave field, from a column that is a multiple of 32 on. Pointers to that column of the first row,
+/// 64-byte aligned, in arrays that are readable a vector (16 floats) to either side. Face i of velocity_x lies left of
+/// cell i, row j of velocity_y below row j of cells.
+struct WaveRows {
+    float *height, *velocity_x, *velocity_y;
+    std::ptrdiff_t stride;  ///< floats from row to row
+    std::ptrdiff_t rows, count;
+    bool with_faces;             ///< moves velocity_y too: one row ahead, at fourth order two
+    bool wall_left, wall_right;  ///< face 0, face `count` is the border's: there u = -+ outflow h
+    float outflow;
+    const float* height_3;  ///< at fourth order, with one row: the row that stands for the third above
+    const WaveDamp* damp;   ///< null: no layer. Of heights, velocity_x and those of velocity_y that no later row needs
+    bool damp_left, damp_right;  ///< this row's part of the layer's ends
+    std::ptrdiff_t first_column;
 };
 
 struct Kernels {
     const char* instructions;  ///< "baseline", "avx2" or "avx512"
 
-    /// One step of a row and of the faces above it: velocity_x -= f dh/dx, above -= f dh/dy, then height -= g times the
+    /// One step of rows, in their order: velocity_x -= f dh/dx, velocity_y -= f dh/dy, then height -= g times the
     /// divergence (Eqs. 7 and 8).
-    void (*wave_row)(const WaveRow& row, float f, float g);
-    /// The same with velocity_x, above_2 and height; f1, f3 are f times 27/24 and 1/24, and so g1, g3.
-    void (*wave_row_4)(const WaveRow4& row, float f1, float f3, float g1, float g3);
+    void (*wave_rows)(const WaveRows& rows, float f, float g);
+    /// The same at fourth order; f1, f3 are f times 27/24 and 1/24, and so g1, g3.
+    void (*wave_rows_4)(const WaveRows& rows, float f1, float f3, float g1, float g3);
     /// v[i] -= f (h[i] - below[i]): faces across rows, alone.
     void (*wave_faces)(float* v, const float* h, const float* below, std::ptrdiff_t count, float f);
     void (*wave_faces_4)(float* v, const float* h, const float* below, const float* above, const float* below_2,
@@ -50,8 +46,11 @@ struct Kernels {
     void (*wave_outflow)(float* v, const float* h, std::ptrdiff_t count, float factor);
     /// u[i] += factor (p[i] - p[i - behind]).
     void (*wave_push)(float* u, const float* p, std::ptrdiff_t behind, std::ptrdiff_t count, float factor);
+    /// Whether any |x| of rows is above the limit, or not a number.
+    bool (*any_above)(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit);
     void (*scale)(float* x, std::ptrdiff_t count, float factor);
-    void (*scale_each)(float* x, const float* factors, std::ptrdiff_t count);
+    /// The absorbing layer's ends of a row.
+    void (*scale_ends)(float* x, const float* left, const float* right, const WaveDamp& damp);
 };
 
 /// The best for this machine; the same on every call.

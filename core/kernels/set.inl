@@ -13,13 +13,14 @@ namespace frm::FRM_KERNEL_SET {
 extern const Kernels kernels;
 const Kernels kernels{
     FRM_KERNEL_NAME(FRM_KERNEL_SET),
-    wave_row,
-    wave_row_4,
+    wave_rows,
+    wave_rows_4,
     wave_faces,
     wave_faces_4,
     wave_outflow,
     wave_push,
+    any_above,
     scale,
-    scale_each,
+    scale_ends,
 };
 }  // namespace frm::FRM_KERNEL_SET

@@ -1,4 +1,4 @@
-// Rows of the wave field: wave_step.h has the order in which they are called.
+// Rows of the wave field: core/water/wave_step.h has the order in which they are called.
 
 /// One vector of v[i] -= f (h[i] - below[i]).
 static inline Lanes moved_across(Lanes v, Lanes h, Lanes below, float f) { return v - f * (h - below); }
@@ -6,19 +6,20 @@ static inline Lanes moved_across(Lanes v, Lanes h, Lanes below, float f) { retur
 // The velocities of a vector are needed at its right end by the heights of the vector before it: heights lag one vector
 // behind, and what both need stays in registers. Each array is read and written once.
 template <bool moves_above>
-static inline void step_row(const WaveRow& r, float f, float g) {
-    float* const h = r.height;
-    float* const u = r.velocity_x;
+static inline void step_row(const WaveRows& r, float* const h, float* const u, float* const v, float f, float g) {
+    const float* const height_above = h + r.stride;
+    float* const v_above = v + r.stride;
     const std::ptrdiff_t whole = (r.count + FRM_LANES - 1) / FRM_LANES * FRM_LANES;
+    const float left = -r.outflow * h[0], right = r.wall_right ? r.outflow * h[r.count - 1] : 0.0f;
     Lanes height = load(h), face = load(u) - f * (height - FRM_FROM_LEFT(load(h - FRM_LANES), height));
-    if (r.wall_left) face[0] = r.left;
+    if (r.wall_left) face[0] = left;
     const auto heights = [&](std::ptrdiff_t i, Lanes next_face, std::ptrdiff_t valid) {
-        Lanes above = load(r.above + i);
+        Lanes above = load(v_above + i);
         if (moves_above) {
-            above = moved_across(above, load(r.height_above + i), height, f);
-            store(r.above + i, valid < FRM_LANES ? first_lanes(above, valid) : above);
+            above = moved_across(above, load(height_above + i), height, f);
+            store(v_above + i, valid < FRM_LANES ? first_lanes(above, valid) : above);
         }
-        const Lanes now = height - g * ((FRM_FROM_RIGHT(face, next_face) - face) + (above - load(r.below + i)));
+        const Lanes now = height - g * ((FRM_FROM_RIGHT(face, next_face) - face) + (above - load(v + i)));
         store(h + i, valid < FRM_LANES ? first_lanes(now, valid) : now);
     };
     std::ptrdiff_t i = 0;
@@ -30,24 +31,20 @@ static inline void step_row(const WaveRow& r, float f, float g) {
         height = next, face = next_face;
     }
     const std::ptrdiff_t valid = r.count - i;
-    if (valid < FRM_LANES) face = with_lane(first_lanes(face, valid), valid, r.right);
+    if (valid < FRM_LANES) face = with_lane(first_lanes(face, valid), valid, right);
     store(u + i, face);
-    heights(i, with_lane(Lanes{}, 0, r.right), valid);
-    u[r.count] = r.right;
-}
-
-static void wave_row(const WaveRow& r, float f, float g) {
-    if (r.height_above)
-        step_row<true>(r, f, g);
-    else
-        step_row<false>(r, f, g);
+    heights(i, with_lane(Lanes{}, 0, right), valid);
+    if (valid == FRM_LANES) u[r.count] = right;
 }
 
 // The same at fourth order: differences (27 d1 - d3) / 24, whose two weights are in f1, f3 and g1, g3.
 template <bool moves_above>
-static inline void step_row_4(const WaveRow4& r, float f1, float f3, float g1, float g3) {
-    float* const h = r.height;
-    float* const u = r.velocity_x;
+static inline void step_row_4(const WaveRows& r, float* const h, float* const u, float* const v,
+                              const float* height_3, float f1, float f3, float g1, float g3) {
+    const float *const height_1 = h + r.stride, *const height_2 = height_1 + r.stride;
+    const float *const v_below = v - r.stride, *const v_above = v + r.stride;
+    float* const v_above_2 = v + 2 * r.stride;
+    const float left = -r.outflow * h[0], right = r.wall_right ? r.outflow * h[r.count - 1] : 0.0f;
     const std::ptrdiff_t n = r.count, whole = (n + FRM_LANES - 1) / FRM_LANES * FRM_LANES, last = whole - FRM_LANES;
     // The last vector and the one after it, with the cells' mirror images behind a wall.
     alignas(64) float end_h[2 * FRM_LANES] = {}, end_u[2 * FRM_LANES] = {};
@@ -57,9 +54,9 @@ static inline void step_row_4(const WaveRow4& r, float f1, float f3, float g1, f
         end_h[n - last + 1] = h[n - 2];
     }
     const auto height_at = [&](std::ptrdiff_t i) { return i < last ? load(h + i) : load(end_h + (i - last)); };
-    const auto faces_of = [&](std::ptrdiff_t i, Lanes left, Lanes x, Lanes right) {
-        const Lanes near = x - FRM_FROM_LEFT(left, x);
-        const Lanes far = FRM_FROM_RIGHT(x, right) - FRM_FROM_LEFT_2(left, x);
+    const auto faces_of = [&](std::ptrdiff_t i, Lanes before_x, Lanes x, Lanes after_x) {
+        const Lanes near = x - FRM_FROM_LEFT(before_x, x);
+        const Lanes far = FRM_FROM_RIGHT(x, after_x) - FRM_FROM_LEFT_2(before_x, x);
         return load(u + i) - (f1 * near - f3 * far);
     };
     Lanes height = height_at(0), before = load(h - FRM_LANES);
@@ -69,26 +66,26 @@ static inline void step_row_4(const WaveRow4& r, float f1, float f3, float g1, f
     const auto patched = [&](Lanes faces) {
         store(end_u, faces);
         for (std::ptrdiff_t k = n - last; k < 2 * FRM_LANES; ++k) end_u[k] = 0;
-        end_u[n - last] = r.right;
-        if (r.wall_right) end_u[n - last + 1] = 2 * r.right - (n - last > 0 ? end_u[n - last - 1] : 0.0f);
+        end_u[n - last] = right;
+        if (r.wall_right) end_u[n - last + 1] = 2 * right - (n - last > 0 ? end_u[n - last - 1] : 0.0f);
         return load(end_u);
     };
     if (r.wall_left) {
-        face[0] = r.left;
-        face_before = with_lane(face_before, FRM_LANES - 1, 2 * r.left - face[1]);
+        face[0] = left;
+        face_before = with_lane(face_before, FRM_LANES - 1, 2 * left - face[1]);
     }
     if (last == 0) face = patched(face);
     const auto heights = [&](std::ptrdiff_t i, Lanes next_face, std::ptrdiff_t valid) {
-        Lanes above = load(r.above_2 + i);
-        const Lanes v = load(r.velocity_y + i), near_above = load(r.above + i);
+        Lanes above = load(v_above_2 + i);
+        const Lanes below = load(v + i), near_above = load(v_above + i);
         if (moves_above) {
-            const Lanes near = load(r.height_2 + i) - load(r.height_1 + i), far = load(r.height_3 + i) - height;
+            const Lanes near = load(height_2 + i) - load(height_1 + i), far = load(height_3 + i) - height;
             above = above - (f1 * near - f3 * far);
-            store(r.above_2 + i, valid < FRM_LANES ? first_lanes(above, valid) : above);
+            store(v_above_2 + i, valid < FRM_LANES ? first_lanes(above, valid) : above);
         }
-        const Lanes near = (FRM_FROM_RIGHT(face, next_face) - face) + (near_above - v);
+        const Lanes near = (FRM_FROM_RIGHT(face, next_face) - face) + (near_above - below);
         const Lanes far = (FRM_FROM_RIGHT_2(face, next_face) - FRM_FROM_LEFT(face_before, face)) +
-                          (above - load(r.below + i));
+                          (above - load(v_below + i));
         const Lanes now = height - (g1 * near - g3 * far);
         store(h + i, valid < FRM_LANES ? first_lanes(now, valid) : now);
     };
@@ -104,14 +101,7 @@ static inline void step_row_4(const WaveRow4& r, float f1, float f3, float g1, f
     }
     store(u + i, first_lanes(face, n - last + 1));
     heights(i, load(end_u + FRM_LANES), n - i);
-    u[n] = r.right;
-}
-
-static void wave_row_4(const WaveRow4& r, float f1, float f3, float g1, float g3) {
-    if (r.height_3)
-        step_row_4<true>(r, f1, f3, g1, g3);
-    else
-        step_row_4<false>(r, f1, f3, g1, g3);
+    u[n] = right;
 }
 
 static void wave_faces(float* __restrict v, const float* __restrict h, const float* __restrict below,
@@ -138,6 +128,59 @@ static void scale(float* __restrict x, std::ptrdiff_t count, float factor) {
     for (std::ptrdiff_t i = 0; i < count; ++i) x[i] *= factor;
 }
 
-static void scale_each(float* __restrict x, const float* __restrict factors, std::ptrdiff_t count) {
-    for (std::ptrdiff_t i = 0; i < count; ++i) x[i] *= factors[i];
+static void scale_ends(float* x, const float* left, const float* right, const WaveDamp& d) {
+    for (std::ptrdiff_t i = 0; i < d.left; i += FRM_LANES) store(x + i, load(x + i) * load(left + i));
+    for (std::ptrdiff_t i = 0; i < d.right; i += FRM_LANES)
+        store(x + d.right_at + i, load(x + d.right_at + i) * load(right + i));
+}
+
+/// The part of one row's ends that lies in these rows' columns.
+static inline void damp_end(float* x, const float* left, const float* right, const WaveRows& r, const WaveDamp& d) {
+    x -= r.first_column;
+    if (r.damp_left)
+        for (std::ptrdiff_t i = 0; i < d.left; i += FRM_LANES) store(x + i, load(x + i) * load(left + i));
+    if (r.damp_right)
+        for (std::ptrdiff_t i = 0; i < d.right; i += FRM_LANES)
+            store(x + d.right_at + i, load(x + d.right_at + i) * load(right + i));
+}
+
+static inline void damp_ends(float* h, float* u, float* v, const WaveRows& r, const WaveDamp& d) {
+    damp_end(h, d.cells_left, d.cells_right, r, d);
+    damp_end(u, d.faces_left, d.faces_right, r, d);
+    damp_end(v, d.cells_left, d.cells_right, r, d);
+}
+
+static void wave_rows(const WaveRows& rows, float f, float g) {
+    const WaveRows r = rows;  // copies that no store can change
+    const WaveDamp d = r.damp ? *r.damp : WaveDamp{};
+    float *h = r.height, *u = r.velocity_x, *v = r.velocity_y;
+    for (std::ptrdiff_t j = 0; j < r.rows; ++j, h += r.stride, u += r.stride, v += r.stride) {
+        if (r.with_faces)
+            step_row<true>(r, h, u, v, f, g);
+        else
+            step_row<false>(r, h, u, v, f, g);
+        if (r.damp) damp_ends(h, u, v, r, d);
+    }
+}
+
+static void wave_rows_4(const WaveRows& rows, float f1, float f3, float g1, float g3) {
+    const WaveRows r = rows;
+    const WaveDamp d = r.damp ? *r.damp : WaveDamp{};
+    float *h = r.height, *u = r.velocity_x, *v = r.velocity_y;
+    for (std::ptrdiff_t j = 0; j < r.rows; ++j, h += r.stride, u += r.stride, v += r.stride) {
+        if (r.with_faces)
+            step_row_4<true>(r, h, u, v, r.height_3 ? r.height_3 : h + 3 * r.stride, f1, f3, g1, g3);
+        else
+            step_row_4<false>(r, h, u, v, h, f1, f3, g1, g3);
+        if (r.damp) damp_ends(h, u, v - r.stride, r, d);
+    }
+}
+
+static bool any_above(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit) {
+    for (std::ptrdiff_t j = 0; j < rows; ++j, x += stride) {
+        std::int32_t within = 1;
+        for (std::ptrdiff_t i = 0; i < count; ++i) within &= (x[i] <= limit) & (x[i] >= -limit);
+        if (!within) return true;
+    }
+    return false;
 }

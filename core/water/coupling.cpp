@@ -16,20 +16,11 @@ std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i);
 }
 
-void raise_evenly(Field& water, double volume) {
-    if (volume == 0) return;
-    const auto rise = static_cast<float>(volume / static_cast<double>(water.cells()));
-    for (std::int32_t j = 0; j < water.def().ny; ++j) {
-        float* const h = water.height_row(j);
-        for (std::int32_t i = 0; i < water.def().nx; ++i) h[i] += rise;
-    }
-}
-
 }  // namespace
 
 void displace_water(Footprint& footprint, Field& water) {
     if (footprint.first) return;
-    raise_evenly(water, footprint.rest_change());
+    water.raise(footprint.rest_change());
     Rect changed = footprint.wet();
     changed.include(footprint.wet_before());
     if (changed.empty()) return;
@@ -40,6 +31,7 @@ void displace_water(Footprint& footprint, Field& water) {
         for (std::int32_t i = changed.i0; i < changed.i1; ++i)
             footprint.own.height_row(j)[i] += now[at(i, j, n)] - before[at(i, j, n)];
     const Rect r = inside_water(footprint, water, changed);
+    water.wake(r.moved(footprint.i0(), footprint.j0()));
     for (std::int32_t j = r.j0; j < r.j1; ++j)
         for (std::int32_t i = r.i0; i < r.i1; ++i)
             water.height_row(j + footprint.j0())[i + footprint.i0()] += now[at(i, j, n)] - before[at(i, j, n)];
@@ -48,8 +40,9 @@ void displace_water(Footprint& footprint, Field& water) {
 void withdraw_body(Footprint& footprint, Field& water) {
     const std::int32_t n = footprint.size();
     const float share = footprint.deposited_share();
-    raise_evenly(water, -footprint.rest_before() * static_cast<double>(share));
+    water.raise(-footprint.rest_before() * static_cast<double>(share));
     const Rect r = inside_water(footprint, water, footprint.wet_before());
+    water.wake(r.moved(footprint.i0(), footprint.j0()));
     for (std::int32_t j = r.j0; j < r.j1; ++j)
         for (std::int32_t i = r.i0; i < r.i1; ++i)
             water.height_row(j + footprint.j0())[i + footprint.i0()] -=
@@ -75,6 +68,7 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
     };
 
     const Rect r = inside_water(footprint, water, {wet.i0, wet.j0, wet.i1 + 1, wet.j1 + 1});
+    water.wake(r.moved(footprint.i0(), footprint.j0()));
     for (std::int32_t j = r.j0; j < r.j1; ++j) {
         for (std::int32_t i = r.i0; i < r.i1; ++i) {
             const std::int32_t wi = i + footprint.i0(), wj = j + footprint.j0();
@@ -96,10 +90,16 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
     }
 }
 
-void push_water(Footprint& footprint, Field& water, float factor) {
+Push push_on_water(Footprint& footprint, float factor) {
     const std::int32_t n = footprint.size();
-    footprint.own.push({footprint.pressure(), n, n, footprint.pressed(), 0, 0, factor});
-    water.push({footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), factor});
+    return {footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), factor};
+}
+
+void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps, float factor) {
+    if (!footprint.active()) return;
+    const std::int32_t n = footprint.size();
+    const Push push{footprint.pressure(), n, n, footprint.pressed(), 0, 0, factor};
+    footprint.own.advance(dt, gravity, steps, &push, footprint.pressed().empty() ? 0 : 1, 1);
 }
 
 }  // namespace frm

@@ -15,8 +15,10 @@ void displace_water(Footprint& footprint, Field& water);
 /// `origin` its origin in the footprint's window; the velocity is taken at the height `z` above the body's origin.
 void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, const Vec3f& angular, float z);
 
-/// One step's push by the pressure on the body's upper side (Eq. 10); factor = dt / density.
-void push_water(Footprint& footprint, Field& water, float factor);
+/// The push by the pressure on the body's upper side (Eq. 10), for each step; factor = dt / density.
+Push push_on_water(Footprint& footprint, float factor);
+/// The same push, and the steps, of the body's own waves.
+void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps, float factor);
 
 /// The body is taken out: the water falls by the body's thickness.
 void withdraw_body(Footprint& footprint, Field& water);

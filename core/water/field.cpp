@@ -30,7 +30,8 @@ float bilinear(const float* data, std::int32_t nx, std::int32_t ny, std::ptrdiff
     return low + t * (high - low);
 }
 
-constexpr std::int32_t vector = 16;  // floats in 64 bytes
+constexpr std::int32_t vector = 16;     ///< floats in 64 bytes
+constexpr std::int32_t keep_room = 64;  ///< the widest layer
 
 /// Two cells beyond the last face, and a vector before the first; rows a page apart would all want the same cache sets.
 std::ptrdiff_t stride_for(std::int32_t nx) {
@@ -50,13 +51,27 @@ Field::Field(const FieldDef& def, std::pmr::memory_resource* memory)
     : def_(def),
       stride_(stride_for(def.nx)),
       memory_(static_cast<std::size_t>(3 * plane_for(def.ny, stride_) + 3 * vector), 0.0f, memory),
-      keep_(static_cast<std::size_t>(4 * def.border_cells), 1.0f, memory) {
+      keep_(static_cast<std::size_t>(2 * keep_room + 2 * (2 * keep_room + 2 * vector) + vector), 1.0f, memory),
+      tiles_(def.nx, def.ny, def.skip_calm_tiles, memory) {
     void* begin = memory_.data();
     std::size_t room = memory_.size() * sizeof(float);
     const std::ptrdiff_t plane = plane_for(def.ny, stride_);
     height_ = static_cast<float*>(std::align(64, 64, begin, room)) + stride_ + vector;
     u_ = height_ + plane;
     v_ = u_ + plane;
+
+    // Whole vectors that hold the layer at the left end, and at the right end with the last face.
+    const std::int32_t width = def.border_cells;
+    damp_.left = (width + vector - 1) / vector * vector;
+    damp_.right_at = (def.nx - width) / vector * vector;
+    damp_.right = (def.nx + vector) / vector * vector - damp_.right_at;
+    begin = keep_.data() + 2 * keep_room;
+    room = keep_.size() * sizeof(float);
+    ends_ = static_cast<float*>(std::align(64, 64, begin, room));
+    damp_.cells_left = ends_;
+    damp_.faces_left = ends_ + keep_room;
+    damp_.cells_right = damp_.faces_left + keep_room;
+    damp_.faces_right = damp_.cells_right + keep_room + 2 * vector;
 }
 
 float Field::stable_step(const FieldDef& def, float gravity) {
@@ -69,7 +84,7 @@ float Field::height_at(const GridOrigin& o, float x, float y) const {
     const float gx = o.x + x, gy = o.y + y;
     const float px = static_cast<float>(o.i) + gx, py = static_cast<float>(o.j) + gy;
     if (!(px >= 0 && py >= 0 && px <= static_cast<float>(def_.nx) && py <= static_cast<float>(def_.ny))) return 0;
-    return bilinear(height_, def_.nx, def_.ny, stride_, o, gx - 0.5f, gy - 0.5f);
+    return level() + bilinear(height_, def_.nx, def_.ny, stride_, o, gx - 0.5f, gy - 0.5f);
 }
 
 void Field::velocity_at(const GridOrigin& o, float x, float y, float& u, float& v) const {
@@ -81,20 +96,33 @@ void Field::velocity_at(const GridOrigin& o, float x, float y, float& u, float& 
     v = bilinear(v_, def_.nx, def_.ny + 1, stride_, o, gx - 0.5f, gy);
 }
 
+void Field::raise(double volume) {
+    if (def_.border == Border::reflecting) level_ += volume / static_cast<double>(cells());
+}
+
 void Field::copy_heights(float* out) const {
-    const auto nx = static_cast<std::size_t>(def_.nx);
-    for (std::int32_t j = 0; j < def_.ny; ++j, out += nx) std::memcpy(out, height_row(j), nx * sizeof(float));
+    const float up = level();
+    for (std::int32_t j = 0; j < def_.ny; ++j, out += def_.nx) {
+        const float* const h = height_row(j);
+        for (std::int32_t i = 0; i < def_.nx; ++i) out[i] = h[i] + up;
+    }
 }
 
 void Field::set_heights(const float* height) {
     calm();
+    wake({0, 0, def_.nx, def_.ny});
     const auto nx = static_cast<std::size_t>(def_.nx);
     for (std::int32_t j = 0; j < def_.ny; ++j, height += nx) std::memcpy(height_row(j), height, nx * sizeof(float));
 }
 
-void Field::calm() { std::fill(memory_.begin(), memory_.end(), 0.0f); }
+void Field::calm() {
+    std::fill(memory_.begin(), memory_.end(), 0.0f);
+    level_ = 0;
+    tiles_.sleep_all();
+}
 
 void Field::shift(std::int32_t di, std::int32_t dj) {
+    wake({0, 0, def_.nx, def_.ny});
     shift_array(height_, def_.nx, def_.ny, stride_, di, dj);
     shift_array(u_, def_.nx + 1, def_.ny, stride_, di, dj);
     shift_array(v_, def_.nx, def_.ny + 1, stride_, di, dj);
@@ -105,6 +133,8 @@ void Field::hash(StateHash& hash) const {
     for (std::int32_t j = 0; j < def_.ny; ++j) hash.words(height_row(j), nx);
     for (std::int32_t j = 0; j < def_.ny; ++j) hash.words(velocity_x_row(j), nx + 1);
     for (std::int32_t j = 0; j <= def_.ny; ++j) hash.words(velocity_y_row(j), nx);
+    hash.value(level_);
+    tiles_.hash(hash);
 }
 
 void shift_array(float* data, std::int32_t nx, std::int32_t ny, std::ptrdiff_t stride, std::int32_t di,

@@ -5,31 +5,12 @@
 #include <memory_resource>
 #include <vector>
 
+#include "core/kernels/kernels.h"
 #include "core/math/hash.h"
+#include "core/water/calm_tiles.h"
+#include "core/water/rect.h"
 
 namespace frm {
-
-/// Cells i0 <= i < i1, j0 <= j < j1.
-struct Rect {
-    std::int32_t i0 = 0, j0 = 0, i1 = 0, j1 = 0;
-
-    bool empty() const { return i0 >= i1 || j0 >= j1; }
-    void include(const Rect& o) {
-        if (o.empty()) return;
-        if (empty()) {
-            *this = o;
-            return;
-        }
-        if (o.i0 < i0) i0 = o.i0;
-        if (o.j0 < j0) j0 = o.j0;
-        if (o.i1 > i1) i1 = o.i1;
-        if (o.j1 > j1) j1 = o.j1;
-    }
-    Rect clipped(std::int32_t nx, std::int32_t ny) const {
-        return {i0 < 0 ? 0 : i0, j0 < 0 ? 0 : j0, i1 > nx ? nx : i1, j1 > ny ? ny : j1};
-    }
-    Rect moved(std::int32_t di, std::int32_t dj) const { return {i0 + di, j0 + dj, i1 + di, j1 + dj}; }
-};
 
 /// A point of the grid: cell (i, j) plus an offset in cells that may be larger than one. Kept apart so that the offset
 /// is a small float however far from the origin the body is.
@@ -47,6 +28,8 @@ struct FieldDef {
     Border border = Border::absorbing;
     std::int32_t border_cells = 0;  ///< of the absorbing layer; at most 64
     std::int32_t order = 2;         ///< of the differences in space: 2 or 4
+    bool skip_calm_tiles = true;    ///< tiles in which nothing is above `calm` rest at zero
+    float calm = 0;                 ///< m; 0: a millionth of the depth, or of 20 cells where that is less
 };
 
 /// A pressure on the surface (Eq. 10): an array of `columns` by `rows` cells, not zero within `where`, whose cell
@@ -57,11 +40,6 @@ struct Push {
     Rect where;
     std::int32_t di = 0, dj = 0;
     float factor = 0;
-};
-
-/// Columns i0 <= i < i1 of a row.
-struct Span {
-    std::int32_t i0, i1;
 };
 
 /// Rows are aligned to 64 bytes and padded; what lies between a row's end and the next one's begin stays zero.
@@ -102,7 +80,17 @@ public:
     float* velocity_y_row(std::int32_t j) { return v_ + j * stride_; }
     const float* velocity_y_row(std::int32_t j) const { return v_ + j * stride_; }
 
-    /// Between the field's heights and an array of nx by ny.
+    /// To be told before anything is written into cells or their faces through the rows above.
+    void wake(const Rect& cells) { tiles_.wake(cells); }
+    /// Cells that a step goes through.
+    std::size_t active_cells() const { return tiles_.active_cells(); }
+    /// Lays a volume, in cells times metres, evenly over all of a closed basin: its calm level rises. Behind an open
+    /// border there is more water than that, and nothing rises.
+    void raise(double volume);
+    /// Of the basin's calm surface, above where it was: to be added to the rows' heights.
+    float level() const { return static_cast<float>(level_); }
+
+    /// All heights, with the level, into an array of nx by ny.
     void copy_heights(float* out) const;
     /// Calm but for these heights.
     void set_heights(const float* height);
@@ -114,14 +102,19 @@ public:
 private:
     friend class WaveStep;
 
+    void look_for_calm(float gravity);
+
     FieldDef def_;
     std::ptrdiff_t stride_;
     std::pmr::vector<float> memory_;
     float *height_, *u_, *v_;  ///< row 0, column 0; v_ also has rows -1 and ny + 1
-    /// What the absorbing layer keeps of each of its cells in a step, and of its faces, from the border inwards; and
-    /// the same backwards.
+    /// What the absorbing layer keeps in a step: of cells and of faces, from the border inwards; then damp_'s.
     std::pmr::vector<float> keep_;
+    WaveDamp damp_{};
+    float* ends_;          ///< where damp_ points to, to be filled
     float keeps_for_ = 0;  ///< the dt of keep_ times the waves' speed, m
+    CalmTiles tiles_;
+    double level_ = 0;
 };
 
 /// Moves the contents of an nx by ny array by whole cells, zero where nothing was; `stride` floats a row.

@@ -32,6 +32,7 @@ FieldDef window_of(const FieldDef& water, float radius) {
     def.nx = def.ny = 2 * ((half + alignment - 1) / alignment) * alignment;
     def.border = Border::absorbing;
     def.border_cells = border_cells;
+    def.skip_calm_tiles = false;
     return def;
 }
 
@@ -138,6 +139,7 @@ void Footprint::shift(std::int32_t di, std::int32_t dj, Field* water) {
 void Footprint::leave_behind(std::int32_t di, std::int32_t dj, Field& water) const {
     const std::int32_t n = size(), nx = water.def().nx;
     const Rect wet = wet_before_.moved(i0_, j0_).clipped(nx, water.def().ny);
+    water.wake(wet);
     for (std::int32_t j = wet.j0; j < wet.j1; ++j) {
         for (std::int32_t i = wet.i0; i < wet.i1; ++i) {
             const std::int32_t wi = i - i0_, wj = j - j0_;

@@ -8,6 +8,7 @@ namespace {
 
 /// Below this many cells the threads cost more than they bring (measured with `frm bench`).
 constexpr std::size_t threaded_cells = std::size_t{1} << 18;
+constexpr std::int32_t layer_room = 64;
 constexpr std::int32_t rows_a_band = 16;  ///< at least
 /// Rows of that many steps, less than a megabyte for 2048 columns, stay in the second-level cache.
 constexpr std::uint32_t steps_together = 8;
@@ -72,23 +73,25 @@ WaveStep::WaveStep(Field& field, float dt, float gravity, const Push* pushes, st
     field.keeps_for_ = dt * speed;
     const std::int32_t width = def.border_cells;
     const float rate = 7.5f * speed / (static_cast<float>(width) * def.cell);
-    float* const cells = field.keep_.data();
-    float* const faces = cells + 2 * width;
+    float *const cells = field.keep_.data(), *const faces = cells + layer_room;
+    const auto at = [&](const float* end) { return field.ends_ + (end - field.ends_); };
     for (std::int32_t k = 0; k < width; ++k) {
         const auto keep = [&](float distance) {
             const float x = 1.0f - distance / static_cast<float>(width);
             return x > 0 ? 1.0f / (1.0f + dt * rate * x * x) : 1.0f;
         };
-        cells[k] = cells[2 * width - 1 - k] = keep(static_cast<float>(k) + 0.5f);
-        faces[k] = faces[2 * width - 1 - k] = keep(static_cast<float>(k));
+        const std::ptrdiff_t mirror = def.nx - 1 - k - field.damp_.right_at;
+        cells[k] = keep(static_cast<float>(k) + 0.5f);
+        faces[k] = keep(static_cast<float>(k));
+        at(field.damp_.cells_left)[k] = at(field.damp_.cells_right)[mirror] = cells[k];
+        at(field.damp_.faces_left)[k] = at(field.damp_.faces_right)[mirror + 1] = faces[k];
     }
 }
 
 void WaveStep::one(std::uint32_t threads) {
     const std::int32_t ny = field_.def_.ny;
     std::int32_t bands = 1;
-    if (threads > 1 && field_.cells() >= threaded_cells)
-        bands = std::min(static_cast<std::int32_t>(threads), ny / rows_a_band);
+    if (threads > 1) bands = std::min(static_cast<std::int32_t>(threads), ny / rows_a_band);
     if (bands <= 1) {
         together(1);
         return;
@@ -104,7 +107,7 @@ void WaveStep::one(std::uint32_t threads) {
 #pragma omp for schedule(static)
         for (std::int32_t b = 0; b < bands; ++b) {
             const std::int32_t end = b + 1 < bands ? begin(b + 1) - around : ny + 1;
-            for (std::int32_t r = begin(b); r < begin(b + 1); ++r) row(r, {end, begin(b) + around + 1, end});
+            rows(begin(b), begin(b + 1), {end, begin(b) + around + 1, end});
         }
 #pragma omp for schedule(static)
         for (std::int32_t b = 0; b < bands; ++b)
@@ -115,31 +118,56 @@ void WaveStep::one(std::uint32_t threads) {
 void WaveStep::together(std::uint32_t steps) {
     const std::int32_t ny = field_.def_.ny, count = static_cast<std::int32_t>(steps);
     const Own all{ny + 1, 0, ny + 1};
+    if (count == 1) {
+        rows(-lead(), ny, all);
+        return;
+    }
     for (std::int32_t t = -lead(); t < ny + lag() * (count - 1); ++t) {
         for (std::int32_t s = 0; s < count; ++s) {
             const std::int32_t r = t - lag() * s;
             if (r < -lead()) break;
-            if (r < 0)
-                faces(r + lead());
-            else if (r < ny)
-                row(r, all);
+            if (r < ny) turn(r, all);
         }
     }
 }
 
-void WaveStep::row(std::int32_t r, const Own& own) {
+// Rows whose turns are alike, inside a block and off the layer's rows, go to the kernel in one call.
+void WaveStep::rows(std::int32_t first, std::int32_t end, const Own& own) {
+    const FieldDef& def = field_.def_;
+    const std::int32_t width = damps_ ? def.border_cells : 0, behind = fourth_ && damps_ ? 1 : 0;
+    for (std::int32_t r = first; r < end;) {
+        const Block* block = r >= 0 ? field_.tiles_.block_of(r) : nullptr;
+        if (!block) {
+            turn(r++, own);
+            continue;
+        }
+        const std::int32_t like_begin = std::max({block->r0, width, own.damp_begin}) + behind;
+        const std::int32_t like_end = std::min({end, def.ny - width, std::min(block->r1, own.faces_end) - lead()});
+        if (push_count_ > 0 || r < like_begin || r >= like_end) {
+            turn(r++, own);
+            continue;
+        }
+        move(*block, r, like_end - r, true, damps_ ? &field_.damp_ : nullptr);
+        r = like_end;
+    }
+}
+
+void WaveStep::turn(std::int32_t r, const Own& own) {
     const FieldDef& def = field_.def_;
     const std::int32_t m = r + lead();
-    const bool with_faces = m < std::min(def.ny, own.faces_end);
-    for (std::size_t k = 0; k < push_count_; ++k) {
-        push_cells_row(field_, pushes_[k], r);
-        if (with_faces) push_faces_row(field_, pushes_[k], m);
+    const Block* const block = r >= 0 ? field_.tiles_.block_of(r) : nullptr;
+    const bool with_faces = block && m < std::min(block->r1, own.faces_end);
+    if (!with_faces && m <= def.ny && m < own.faces_end) faces(m);
+    if (block) {
+        for (std::size_t k = 0; k < push_count_; ++k) {
+            push_cells_row(field_, pushes_[k], r);
+            if (with_faces) push_faces_row(field_, pushes_[k], m);
+        }
+        if (fourth_ && r == def.ny - 1) mirror_faces(field_, def.ny + 1, def.ny, def.ny - 1);
+        move(*block, r, 1, with_faces, nullptr);
     }
-    if (m == def.ny && m < own.faces_end) faces(m);
-    if (fourth_ && r == def.ny - 1) mirror_faces(field_, def.ny + 1, def.ny, def.ny - 1);
-    move_row(r, 0, def.nx, with_faces);
-    if (!damps_) return;
-    damp_row(r);
+    if (!damps_ || r < 0) return;
+    if (block) damp_row(*block, r);
     const auto damp_own = [&](std::int32_t face) {
         if (face >= own.damp_begin && face < own.damp_end) damp_faces(face);
     };
@@ -148,82 +176,137 @@ void WaveStep::row(std::int32_t r, const Own& own) {
     if (r == def.ny - 1) damp_own(r + 1);
 }
 
-void WaveStep::move_row(std::int32_t r, std::int32_t i0, std::int32_t i1, bool with_faces) {
+void WaveStep::move(const Block& block, std::int32_t r, std::int32_t rows, bool with_faces, const WaveDamp* damp) {
     const FieldDef& def = field_.def_;
-    float* const h = field_.height_row(r) + i0;
-    const std::ptrdiff_t stride = field_.stride();
-    const bool wall_left = i0 == 0, wall_right = i1 == def.nx;
-    const float left = wall_left ? -outflow_ * h[0] : 0.0f;
-    const float right = wall_right ? outflow_ * h[i1 - i0 - 1] : 0.0f;
-    float* const u = field_.velocity_x_row(r) + i0;
-    float* const v = field_.velocity_y_row(r) + i0;
-    if (!fourth_) {
-        kernel_.wave_row({h, u, v, v + stride, with_faces ? h + stride : nullptr, i1 - i0, left, right, wall_left},
-                         slope_, divergence_);
-        return;
+    const bool third_row_is_missing = fourth_ && with_faces && r + 3 >= def.ny;
+    for (const Span* span = block.begin; span != block.end; ++span) {
+        const std::int32_t i0 = span->i0, i1 = span->i1;
+        WaveRows w;
+        w.height = field_.height_row(r) + i0;
+        w.velocity_x = field_.velocity_x_row(r) + i0;
+        w.velocity_y = field_.velocity_y_row(r) + i0;
+        w.stride = field_.stride();
+        w.rows = rows;
+        w.count = i1 - i0;
+        w.with_faces = with_faces;
+        w.wall_left = i0 == 0;
+        w.wall_right = i1 == def.nx;
+        w.outflow = outflow_;
+        w.height_3 = third_row_is_missing ? mirrored(field_, r + 3) + i0 : nullptr;
+        w.damp = damp;
+        w.damp_left = span == block.begin && i0 < field_.damp_.left;
+        w.damp_right = span + 1 == block.end && i1 > field_.damp_.right_at;
+        w.first_column = i0;
+        if (fourth_)
+            kernel_.wave_rows_4(w, slope_ * near_weight, slope_ * far_weight, divergence_ * near_weight,
+                                divergence_ * far_weight);
+        else
+            kernel_.wave_rows(w, slope_, divergence_);
     }
-    kernel_.wave_row_4(
-        {h, u, v - stride, v, v + stride, v + 2 * stride, h + stride, h + 2 * stride,
-         with_faces ? mirrored(field_, r + 3) + i0 : nullptr, i1 - i0, left, right, wall_left, wall_right},
-        slope_ * near_weight, slope_ * far_weight, divergence_ * near_weight, divergence_ * far_weight);
+}
+
+const Block* WaveStep::block_of_faces(std::int32_t m) const {
+    return field_.tiles_.block_of(std::min(m, field_.def_.ny - 1));
 }
 
 void WaveStep::faces(std::int32_t m) {
     const FieldDef& def = field_.def_;
-    float* const v = field_.velocity_y_row(m);
-    if (m == 0 || m == def.ny) {
-        if (def.border == Border::absorbing)
-            kernel_.wave_outflow(v, field_.height_row(m == 0 ? 0 : m - 1), def.nx, m == 0 ? -outflow_ : outflow_);
-        return;
+    const Block* const block = block_of_faces(m);
+    if (!block) return;
+    if (m > 0 && m < def.ny)
+        for (std::size_t k = 0; k < push_count_; ++k) push_faces_row(field_, pushes_[k], m);
+    for (const Span* span = block->begin; span != block->end; ++span) {
+        const std::int32_t i0 = span->i0, count = span->i1 - i0;
+        float* const v = field_.velocity_y_row(m) + i0;
+        const auto h = [&](std::int32_t j) { return mirrored(field_, j) + i0; };
+        if (m == 0 || m == def.ny) {
+            if (def.border == Border::absorbing)
+                kernel_.wave_outflow(v, h(m == 0 ? 0 : m - 1), count, m == 0 ? -outflow_ : outflow_);
+        } else if (fourth_) {
+            kernel_.wave_faces_4(v, h(m), h(m - 1), h(m + 1), h(m - 2), count, slope_ * near_weight,
+                                 slope_ * far_weight);
+        } else {
+            kernel_.wave_faces(v, h(m), h(m - 1), count, slope_);
+        }
     }
-    for (std::size_t k = 0; k < push_count_; ++k) push_faces_row(field_, pushes_[k], m);
-    if (!fourth_) {
-        kernel_.wave_faces(v, field_.height_row(m), field_.height_row(m - 1), def.nx, slope_);
-        return;
-    }
-    kernel_.wave_faces_4(v, field_.height_row(m), field_.height_row(m - 1), mirrored(field_, m + 1),
-                         mirrored(field_, m - 2), def.nx, slope_ * near_weight, slope_ * far_weight);
-    if (m == 1) mirror_faces(field_, -1, 0, 1);
+    if (fourth_ && m == 1) mirror_faces(field_, -1, 0, 1);
 }
 
-void WaveStep::damp_row(std::int32_t r) {
-    const std::int32_t nx = field_.def_.nx, ny = field_.def_.ny;
-    const float *cells = field_.keep_.data(), *faces = cells + 2 * field_.def_.border_cells;
-    const float across = keep_of_row(cells, r, ny);
-    damp(field_.height_row(r), nx, cells, across);
-    damp(field_.velocity_x_row(r), nx + 1, faces, across);
+void WaveStep::damp_row(const Block& block, std::int32_t r) {
+    const std::int32_t from_border = std::min(r, field_.def_.ny - 1 - r);
+    const float across =
+        from_border < field_.def_.border_cells ? field_.keep_[static_cast<std::size_t>(from_border)] : 1.0f;
+    damp(block, field_.height_row(r), false, across);
+    damp(block, field_.velocity_x_row(r), true, across);
 }
 
 void WaveStep::damp_faces(std::int32_t m) {
-    if (!damps_) return;
-    const float *cells = field_.keep_.data(), *faces = cells + 2 * field_.def_.border_cells;
-    damp(field_.velocity_y_row(m), field_.def_.nx, cells, keep_of_row(faces, m, field_.def_.ny + 1));
+    const Block* const block = block_of_faces(m);
+    if (!damps_ || !block) return;
+    const std::int32_t from_border = std::min(m, field_.def_.ny - m);
+    damp(*block, field_.velocity_y_row(m), false,
+         from_border < field_.def_.border_cells ? field_.keep_[static_cast<std::size_t>(layer_room + from_border)]
+                                                : 1.0f);
 }
 
-float WaveStep::keep_of_row(const float* keep, std::int32_t j, std::int32_t rows) const {
-    const std::int32_t from_border = std::min(j, rows - 1 - j);
-    return from_border < field_.def_.border_cells ? keep[from_border] : 1.0f;
+void WaveStep::damp(const Block& block, float* x, bool along, float across) {
+    const WaveDamp& d = field_.damp_;
+    if (across != 1.0f)
+        for (const Span* span = block.begin; span != block.end; ++span)
+            kernel_.scale(x + span->i0, span->i1 - span->i0 + (along && span->i1 == field_.def_.nx), across);
+    kernel_.scale_ends(x, along ? d.faces_left : d.cells_left, along ? d.faces_right : d.cells_right, d);
 }
 
-void WaveStep::damp(float* x, std::int32_t columns, const float* keep, float across) {
-    const std::int32_t width = field_.def_.border_cells;
-    if (across != 1.0f) kernel_.scale(x, columns, across);
-    kernel_.scale_each(x, keep, width);
-    kernel_.scale_each(x + columns - width, keep + width, width);
+void Field::look_for_calm(float gravity) {
+    const float still = def_.calm > 0 ? def_.calm : 1e-6f * std::min(def_.depth, 20 * def_.cell);
+    // The velocity of a wave of that height.
+    const float slow = still * std::sqrt(gravity / def_.depth);
+    const Kernels& kernel = kernels();
+    const auto each = [&](const Rect& c, const auto& use) {
+        const std::int32_t last_column = c.i1 == def_.nx, last_row = c.j1 == def_.ny;
+        return use(height_row(c.j0) + c.i0, c.j1 - c.j0, c.i1 - c.i0, still) ||
+               use(velocity_x_row(c.j0) + c.i0, c.j1 - c.j0, c.i1 - c.i0 + last_column, slow) ||
+               use(velocity_y_row(c.j0) + c.i0, c.j1 - c.j0 + last_row, c.i1 - c.i0, slow);
+    };
+    tiles_.look(
+        [&](const Rect& c) {
+            return each(c, [&](const float* x, std::int32_t rows, std::int32_t count, float limit) {
+                return kernel.any_above(x, stride_, rows, count, limit);
+            });
+        },
+        [&](const Rect& c) {
+            each(c, [&](float* x, std::int32_t rows, std::int32_t count, float) {
+                for (std::int32_t j = 0; j < rows; ++j) std::fill_n(x + j * stride_, count, 0.0f);
+                return false;
+            });
+        });
 }
 
 void Field::advance(float dt, float gravity, std::uint32_t steps, const Push* pushes, std::size_t push_count,
                     std::uint32_t threads) {
-    WaveStep step(*this, dt, gravity, pushes, push_count);
-    if (threads > 1 && cells() >= threaded_cells) {
-        for (std::uint32_t s = 0; s < steps; ++s) step.one(threads);
-        return;
+    for (std::size_t k = 0; k < push_count; ++k) {
+        const Rect r = pushed(*this, pushes[k]).moved(pushes[k].di, pushes[k].dj);
+        wake(r);
     }
-    for (; steps > 0; steps -= std::min(steps, steps_together)) step.together(std::min(steps, steps_together));
+    while (steps > 0) {
+        const bool threaded = threads > 1 && active_cells() >= threaded_cells;
+        const std::uint32_t now = std::min({steps, tiles_.steps_left(), threaded ? 1 : steps_together});
+        if (now == 1)
+            for (std::size_t k = 0; k < push_count; ++k) push(pushes[k]);
+        WaveStep step(*this, dt, gravity, pushes, now == 1 ? 0 : push_count);
+        if (threaded)
+            step.one(threads);
+        else
+            step.together(now);
+        tiles_.count(now);
+        if (tiles_.due()) look_for_calm(gravity);
+        steps -= now;
+    }
 }
 
 void Field::push(const Push& push) {
     const Rect r = pushed(*this, push);
+    wake(r.moved(push.di, push.dj));
     for (std::int32_t j = r.j0; j < r.j1; ++j) {
         push_cells_row(*this, push, j + push.dj);
         push_faces_row(*this, push, j + push.dj);

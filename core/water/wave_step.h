@@ -26,13 +26,14 @@ private:
     std::int32_t lead() const { return fourth_ ? 2 : 1; }
     std::int32_t lag() const { return fourth_ ? 4 : 2; }
 
-    void row(std::int32_t r, const Own& own);
-    void move_row(std::int32_t r, std::int32_t i0, std::int32_t i1, bool with_faces);
+    void turn(std::int32_t r, const Own& own);
+    void rows(std::int32_t first, std::int32_t end, const Own& own);
+    void move(const Block& block, std::int32_t r, std::int32_t rows, bool with_faces, const WaveDamp* damp);
     void faces(std::int32_t m);
-    void damp_row(std::int32_t r);
+    void damp_row(const Block& block, std::int32_t r);
     void damp_faces(std::int32_t m);
-    float keep_of_row(const float* keep, std::int32_t j, std::int32_t rows) const;
-    void damp(float* x, std::int32_t columns, const float* keep, float across);
+    void damp(const Block& block, float* x, bool along, float across);
+    const Block* block_of_faces(std::int32_t m) const;
 
     Field& field_;
     const Kernels& kernel_;

@@ -23,7 +23,9 @@ void forget_forces(Body& body) {
 }  // namespace
 
 World::World(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resource* memory)
-    : def_(def), threads_(threads), memory_(memory), bodies_(memory) {}
+    : def_(def), threads_(threads), memory_(memory), bodies_(memory), pushes_(memory) {
+    pushes_.reserve(1);
+}
 
 Water& World::create_water(const WaterDef& def) {
     water_ = std::allocate_shared<Water>(std::pmr::polymorphic_allocator<Water>(memory_), def, memory_);
@@ -57,6 +59,7 @@ void World::set_pressure(const float* pressure) {
 }
 
 Body& World::create_body(const BodyDef& def, std::uint32_t id) {
+    pushes_.reserve(bodies_.size() + 2);
     auto body = std::allocate_shared<Body>(std::pmr::polymorphic_allocator<Body>(memory_), def, id, memory_);
     if (water_) give_footprint(*body);
     bodies_.push_back(std::move(body));
@@ -154,18 +157,25 @@ void World::move_water(float dt, std::uint32_t substeps) {
     const bool displaces = (def_.model & model_displacement) != 0;
     if (displaces)
         for (const auto& body : bodies_) displace_water(*body->footprint, field);
-    for (std::uint32_t n = 0; n < substeps; ++n) {
-        if (!displaces)
+    pushes_.clear();
+    if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
+    for (const auto& body : bodies_)
+        if (!body->footprint->pressed().empty()) pushes_.push_back(push_on_water(*body->footprint, push));
+    if (displaces) {
+        field.advance(step, def_.fluid.gravity, substeps, pushes_.data(), pushes_.size(), threads_);
+    } else {
+        // The velocity inside a body is the body's before each step.
+        for (std::uint32_t n = 0; n < substeps; ++n) {
             for (const auto& body : bodies_)
                 force_velocity(*body->footprint, field, body->def.twist.linear, body->def.twist.angular,
                                body->wet_height);
-        if (water_->pressure()) field.push({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
-        for (const auto& body : bodies_) push_water(*body->footprint, field, push);
-        field.step(step, def_.fluid.gravity, threads_);
-        if (!(def_.model & model_own_waves)) continue;
-        for (const auto& body : bodies_)
-            if (body->footprint->active()) body->footprint->own.step(step, def_.fluid.gravity, 1);
+            field.advance(step, def_.fluid.gravity, 1, pushes_.data(), pushes_.size(), threads_);
+            if (def_.model & model_own_waves)
+                for (const auto& body : bodies_) advance_own(*body->footprint, step, def_.fluid.gravity, 1, push);
+        }
     }
+    if (displaces && def_.model & model_own_waves)
+        for (const auto& body : bodies_) advance_own(*body->footprint, step, def_.fluid.gravity, substeps, push);
     for (const auto& body : bodies_) body->footprint->end();
 }
 

@@ -82,6 +82,7 @@ private:
     std::pmr::memory_resource* memory_;
     std::shared_ptr<Water> water_;
     std::pmr::vector<std::shared_ptr<Body>> bodies_;
+    std::pmr::vector<Push> pushes_;  ///< of one tick; has room for all bodies
     WorldObserver* observer_ = nullptr;
     std::uint64_t ticks_ = 0;
     double time_ = 0;

@@ -18,7 +18,7 @@ std::shared_ptr<const Map> slab_map() {
 double volume(const Field& f) {
     double sum = 0;
     for (std::int32_t j = 0; j < f.def().ny; ++j)
-        for (std::int32_t i = 0; i < f.def().nx; ++i) sum += static_cast<double>(f.height_row(j)[i]);
+        for (std::int32_t i = 0; i < f.def().nx; ++i) sum += static_cast<double>(f.height_row(j)[i] + f.level());
     return sum * static_cast<double>(f.def().cell * f.def().cell);
 }
 
