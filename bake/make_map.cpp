@@ -6,6 +6,7 @@
 #include "bake/bake.h"
 #include "bake/directions/fluctuations.h"
 #include "bake/directions/region_forces.h"
+#include "bake/directions/torque.h"
 #include "bake/map/fill.h"
 #include "bake/potential/added_mass.h"
 #include "bake/spin_table.h"
@@ -34,10 +35,13 @@ Streams streams_at(const BakePlan& plan, const std::vector<TaskResult>& results,
     return out;
 }
 
-void add_means(Tables& tables, const BakePlan& plan, const RegionForces& forces) {
-    for (std::uint32_t d = 0; d < plan.directions.count(); ++d)
-        for (const PatchForce& f : forces.mean(plan.directions.direction(d)))
-            tables.mean.push_back({Vec3f(f.pressure), Vec3f(f.friction)});
+void add_means(Tables& tables, const BakePlan& plan, const RegionForces& forces, const Map& map) {
+    for (std::uint32_t d = 0; d < plan.directions.count(); ++d) {
+        const Vec3d e = plan.directions.direction(d);
+        std::vector<PatchForce> mean = forces.mean(e);
+        restore_torque(mean, map.sources, plan.symmetry.centre, forces.known().torque(e));
+        for (const PatchForce& f : mean) tables.mean.push_back({Vec3f(f.pressure), Vec3f(f.friction)});
+    }
 }
 
 PeriodicSpec spec_of(const BakePlan& plan, const Streams& streams) {
@@ -148,7 +152,7 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
         const Streams streams = streams_at(plan, results, means, speed);
         const RegionForces forces(transfers, plan.symmetry, streams.means, streams.solved, plan.reference_length,
                                   plan.spacing);
-        add_means(tables, plan, forces);
+        add_means(tables, plan, forces, *map);
         describe(report, streams.tasks, forces.known());
         if (speed != options.speed) continue;
         report.direction_errors = forces.known().errors();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "bake/directions/torque.h"
 #include "core/map/lookup.h"
 
 namespace frm::bake {
@@ -32,45 +33,6 @@ std::vector<Matrix3> isometries(const Symmetry& symmetry) {
 
 /// Angular velocity is an axial vector.
 Vec3d carried(const Matrix3& g, const Vec3d& spin) { return (g * spin) * determinant(g); }
-
-/// A region's force has a moment about its source, which a map does not hold: of a turning body, whose force grows outwards
-/// over a region, that is a tenth of the torque and more where regions are few. This gives back what is missing of the
-/// torque about `centre` as forces a_l alpha x d_l on the regions, d_l from the sources' centroid and a_l their areas:
-/// without a force on the whole, and small where the sources are far apart.
-void restore_torque(std::vector<PatchForce>& force, const Map& map, const Vec3d& centre, const Vec3d& torque) {
-    Vec3d missing = torque, middle;
-    double area = 0;
-    for (std::size_t l = 0; l < force.size(); ++l) {
-        const Vec3d at(map.sources[l].position);
-        const double a = static_cast<double>(map.sources[l].area);
-        missing -= cross(at - centre, force[l].pressure + force[l].friction);
-        middle += at * a;
-        area += a;
-    }
-    middle = middle / area;
-    // sum of a_l d x (alpha x d) = M alpha.
-    Matrix3 m{};
-    for (Vec3d& row : m.row) row = {};
-    for (const Source& source : map.sources) {
-        const Vec3d d = Vec3d(source.position) - middle;
-        const double a = static_cast<double>(source.area);
-        for (int i = 0; i < 3; ++i) {
-            Vec3d& row = m.row[static_cast<std::size_t>(i)];
-            row -= d * (a * d[i]);
-            row[i] += a * dot(d, d);
-        }
-    }
-    // Sources in a line cannot bear a torque about it.
-    constexpr double least = 1e-6;
-    const double trace = m.row[0].x + m.row[1].y + m.row[2].z, det = determinant(m);
-    if (!(det > least * trace * trace * trace)) return;
-    const Vec3d alpha = (cross(m.row[1], m.row[2]) * missing.x + cross(m.row[2], m.row[0]) * missing.y +
-                         cross(m.row[0], m.row[1]) * missing.z) /
-                        det;
-    for (std::size_t l = 0; l < force.size(); ++l)
-        force[l].pressure +=
-            cross(alpha, Vec3d(map.sources[l].position) - middle) * static_cast<double>(map.sources[l].area);
-}
 
 }  // namespace
 
@@ -111,7 +73,7 @@ void fill_spin(Map& map, const BakePlan& plan, const std::vector<FlowMeans>& mea
             for (const Matrix3& g : by) torque += carried(g, about_centre) * part;
         }
         if (!found) throw BakeError("bake: the spin about an axis is missing");
-        restore_torque(force, map, centre, torque);
+        restore_torque(force, map.sources, centre, torque);
         const Vec3f spin(axes.direction(d) * plan.spin_rate);
         for (std::uint32_t l = 0; l < plan.regions.count; ++l) {
             const SourceForce local = mean_force(map, l, cross(map.sources[l].position - Vec3f(centre), spin));

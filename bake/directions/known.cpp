@@ -60,6 +60,7 @@ double spacing_of(std::uint32_t frequency) { return std::sqrt(4 * pi / (4.0 * fr
 KnownForces::KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirection>& solved, double size,
                          double spacing)
     : symmetry_(symmetry),
+      size_(size),
       spacing_(spacing),
       images_(bake::images_of(symmetry, solved, spacing)),
       sites_(sites_of(images_)),
@@ -71,6 +72,14 @@ KnownForces::KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirec
     for (const FitValue& value : values_) largest = std::max(largest, length(force_of(value)));
     for (std::size_t i = 0; i < values_.size(); ++i)
         error_.push_back(largest > 0 ? length(force_of(predicted[i]) - force_of(values_[i])) / largest : 0);
+}
+
+Vec3d KnownForces::torque(const Vec3d& e) const {
+    const std::vector<double> weights = fit_.weights(e);
+    Vec3d sum;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        sum += Vec3d(values_[i][3], values_[i][4], values_[i][5]) * (weights[i] * size_);
+    return sum;
 }
 
 DirectionErrors KnownForces::errors() const {

@@ -33,6 +33,8 @@ public:
     /// All images of all solved directions, in their order; a site's group is its solved direction.
     const std::vector<FitSite>& sites() const { return sites_; }
     const DirectionFit& fit() const { return fit_; }
+    /// Mean torque on the whole body about the symmetry's centre, N m, in a stream of unit direction e.
+    Vec3d torque(const Vec3d& e) const;
 
     /// Every solved direction predicted from the others; zero, which is not known, where there is one only.
     DirectionErrors errors() const;
@@ -43,7 +45,7 @@ public:
 
 private:
     const Symmetry& symmetry_;
-    double spacing_;
+    double size_, spacing_;
     std::vector<std::vector<Image>> images_;
     std::vector<FitSite> sites_;
     std::vector<FitValue> values_;

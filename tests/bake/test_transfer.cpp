@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/directions/torque.h"
 #include "bake/directions/transfer.h"
 #include "bake/error.h"
 #include "bake/regions/regions.h"
@@ -129,4 +130,36 @@ TEST_CASE("the sides of a blade thinner than the tolerance are not mixed up", "[
         for (const Transfer::Share& part : transfer.shares())
             CHECK(part.region == (normal.z == 0 || part.patch == 2 ? part.patch : 1 - part.patch));
     }
+}
+
+TEST_CASE("what regions lack of a flow's torque is given back without a force", "[transfer]") {
+    std::pmr::vector<Source> sources(5);
+    std::vector<PatchForce> force(5);
+    for (std::size_t l = 0; l < 5; ++l) {
+        const auto k = static_cast<float>(l);
+        sources[l].position = {0.1f * k, 0.02f * k * k, l % 2 ? 0.05f : 0.0f};
+        sources[l].area = 0.01f + 0.002f * k;
+        force[l] = {{1.0 + 0.1 * static_cast<double>(l), -0.3, 0.2}, {0.01, 0.02, 0}};
+    }
+    const Vec3d centre(0.1, 0.2, -0.1), wanted(0.3, -0.7, 0.2);
+    const auto sums = [&] {
+        std::pair<Vec3d, Vec3d> sum;
+        for (std::size_t l = 0; l < 5; ++l) {
+            const Vec3d f = force[l].pressure + force[l].friction;
+            sum.first += f;
+            sum.second += cross(Vec3d(sources[l].position) - centre, f);
+        }
+        return sum;
+    };
+    const Vec3d before = sums().first;
+    CHECK(length(sums().second - wanted) > 0.1);
+    restore_torque(force, sources, centre, wanted);
+    CHECK(length(sums().first - before) < 1e-9);
+    CHECK(length(sums().second - wanted) < 1e-9);
+
+    // In a line: none can be had about it, and nothing is touched.
+    for (std::size_t l = 0; l < 5; ++l) sources[l].position = {0.1f * static_cast<float>(l), 0, 0};
+    const std::vector<PatchForce> as_it_was = force;
+    restore_torque(force, sources, centre, {1, 0, 0});
+    for (std::size_t l = 0; l < 5; ++l) CHECK(length(force[l].pressure - as_it_was[l].pressure) == 0);
 }
