@@ -163,18 +163,24 @@ Wet clipped_surface(Body& body, const BodyLevel& level, const HeightGrid* grid, 
                 any = true;
                 continue;
             }
-            all = false;
-            if (planes.state[k] == cluster_dry) continue;
+            if (planes.state[k] == cluster_dry) {
+                all = false;
+                continue;
+            }
             alignas(64) float lanes[kernel_lanes] = {};
+            std::uint32_t cut = 0;
             for (std::uint32_t b = clusters.first_batch[first + k]; b < clusters.first_batch[first + k + 1]; ++b) {
-                body.clipped_triangles +=
-                    kernel.clip_triangles(&clusters.batches[b], planes.offset[k], planes.slope[0][k],
-                                          planes.slope[1][k], planes.slope[2][k], &clips, lanes);
+                cut += kernel.clip_triangles(&clusters.batches[b], planes.offset[k], planes.slope[0][k],
+                                             planes.slope[1][k], planes.slope[2][k], &clips, lanes);
                 // Lanes are single: they go on in double before thousands of triangles cost digits.
                 if (++clipped_batches % 64 == 0) add(wet, clips), clips = {};
             }
+            body.clipped_triangles += cut;
             const float part = sum_of<float>(lanes);
-            area += part;
+            // With no triangle cut they are all wet, or some are dry: those are more of the area than digits are.
+            const bool whole = cut == 0 && part > block.area[k] * (1 - 1e-5f);
+            area += whole ? block.area[k] : part;
+            all = all && whole;
             any |= part > 0;
         }
     }
@@ -224,7 +230,10 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     // and no moment, and a metre of depth more would only cost digits.
     const bool all_wet = centre_level + range.low > height;
     const float plane = centre_level + (range.flat() ? range.low : 0.0f);  // else waves are sampled
-    const BodyLevel level{all_wet ? 0.0f : plane * inverse, {up.x, up.y, up.z}, inverse};
+    // Under waves the clusters' planes are laid so far above the body that each counts as wet, whatever their slopes.
+    const float above = 4 * clusters.radius + (4 * (range.high - range.low) - range.low) * inverse;
+    const float rest = !all_wet ? plane * inverse : range.flat() ? 0.0f : above;
+    const BodyLevel level{rest, {up.x, up.y, up.z}, inverse};
     Wet wet;
     if (all_wet && range.flat()) {
         body.clipped_triangles = 0;
@@ -247,7 +256,7 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     body.displaced_volume = static_cast<float>(-dot(wet.force, Vec3d(up)) * volume);
     body.wet_area = static_cast<float>(wet.area * s * s);
     const float mean_depth = wet.area > 0 ? static_cast<float>(wet.depth / wet.area * s) : 0.0f;
-    body.wet_height = wet.area > 0 ? (all_wet ? arm.z - mean_depth : surface.level - mean_depth) : 0.0f;
+    body.wet_height = wet.area > 0 ? arm.z + level.level * scale - mean_depth : 0.0f;
 }
 
 }  // namespace frm
