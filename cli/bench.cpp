@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bake/flow/speed.h"
+#include "cli/bench_body.h"
 #include "cli/bench_mujoco.h"
 #include "cli/bench_tick.h"
 #include "cli/command.h"
@@ -75,6 +76,15 @@ void ticks(const Options& o, Results& out) {
     const double still = median(large, deep);
     out.add("submerged_body_us", moving, "us", "body under flat water: 2,000 triangles and 40 sources");
     out.add("lookup_ns_per_source", 1e3 * (moving - still) / 40, "ns", "what its motion adds, a source", 15);
+
+    const BodyTimes body = measure_body(large, o.seconds);
+    out.add("body_cut_us", body.cut, "us", "wet surface of 2,000 triangles, half wet in waves");
+    out.add("body_wet_us", body.wet, "us", "the same, wholly wet under waves");
+    out.add("body_calm_us", body.calm, "us", "the same, wholly wet under calm water");
+    out.add("body_displacement_us", body.displacement, "us", "its displaced volume, half wet");
+    out.add("body_still_us", body.still, "us", "the same, of a body that has not moved");
+    out.add("body_coupling_us", body.coupling, "us", "that into the water and its own waves");
+    out.add("body_dry_us", body.dry, "us", "all of it, above the water");
 
     const double empty = median(large, {0, 0, 0, 0, true});
     const double dry = median(large, {0, 0, 1000, 0, true});

@@ -3,16 +3,11 @@
 namespace frm {
 
 Body::Body(const BodyDef& d, std::uint32_t number, std::pmr::memory_resource* memory)
-    : def(d),
-      id(number),
-      rotation(d.pose.rotation),
-      local(d.map->vertices.size(), Vec3f(), memory),
-      depth(d.map->vertices.size(), 0.0f, memory),
-      sources(d.map->sources.size(), SourceState(), memory) {}
+    : def(d), id(number), rotation(d.pose.rotation), sources(d.map->sources.size(), SourceState(), memory) {}
 
-Vec3f Body::centre() const { return (def.map->shape.low + def.map->shape.high) * (0.5f * def.scale); }
+Vec3f Body::centre() const { return def.map->clusters.centre * def.scale; }
 
-float Body::radius() const { return 0.5f * def.scale * length(def.map->shape.high - def.map->shape.low); }
+float Body::radius() const { return def.map->clusters.radius * def.scale; }
 
 void sum_forces(Body& body, const Fluid& fluid) {
     const Vec3f weight(0, 0, -body.def.mass * fluid.gravity);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/body/volume_elements.h"
 #include "core/map/map.h"
 #include "core/math/quat.h"
 #include "core/model.h"
@@ -60,35 +61,42 @@ struct SourceState {
     Vec3f pressure, friction;  ///< N, world axes
 };
 
+enum class Wetness : std::uint8_t { unknown, dry, partly, whole };
+
 struct Body {
     Body(const BodyDef& def, std::uint32_t id, std::pmr::memory_resource* memory);
 
     BodyDef def;
     std::uint32_t id;  ///< counts the bodies of a world in the order of creation
     Rotation<float> rotation;
-    std::pmr::vector<Vec3f> local;  ///< vertices, scaled and turned: world axes, origin at the body
-    std::pmr::vector<float> depth;  ///< of each vertex
     std::pmr::vector<SourceState> sources;
-    std::optional<Footprint> footprint;  ///< while the world has water
+    std::optional<Footprint> footprint;      ///< while the world has water
+    std::optional<VolumeElements> elements;  ///< while it has a footprint: what is laid into it
 
     Forces forces;
     float displaced_volume = 0, wet_area = 0, relative_speed = 0;
     std::uint32_t wet_sources = 0, clipped_triangles = 0;
     bool water_finite = true;  ///< the surface around it is a finite number
-    float wet_height = 0;      ///< of the wet surface's centroid above the origin, m
+    float wet_height = 0;  ///< of the wet surface's centroid above the origin, m, as if the surface over it were calm
+    Wetness wetness = Wetness::unknown;  ///< what the sources and the buoyancy were last set to
+
+    Vec3d laid_at;  ///< the pose that the footprint's thickness belongs to
+    Rotation<float> laid_rotation;
 
     /// Centre and radius of a sphere around the surface, body frame, scaled.
     Vec3f centre() const;
     float radius() const;
 };
 
-/// What of the surface is wet (section 6.2) and the hydrostatic force on it (Eqs. 1, 4 and 5), by an exact clip of
-/// every triangle against the surface, taken as flat within the triangle.
+/// What of the surface is wet (section 6.2) and the hydrostatic force on it (Eqs. 1, 4 and 5). The water is a plane over
+/// each cluster of triangles: clusters that it leaves wholly wet or dry take one evaluation, the triangles of the others
+/// an exact clip. Under a calm surface a body that is wholly wet or dry takes one evaluation itself.
 void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid);
 
 /// Lays the volume that the body displaces under the calm surface, `level` above its origin, into its footprint; with
-/// `spread`, the wider the deeper. After measure_wet_surface, which turns the surface.
-void lay_displacement(Body& body, float level, bool spread);
+/// `spread`, the wider the deeper. `keep_still`: a body of which no point has moved by a thousandth of a cell since keeps
+/// what was laid; its volume under the surface is off by less than that times the area of its waterline.
+void lay_displacement(Body& body, float level, bool spread, bool keep_still = true);
 
 /// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). `model` says by
 /// its bits: own_waves, that the water's velocity is taken without what the body itself made; displacement, that the

@@ -1,106 +1,262 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 
 #include "core/body/body.h"
-#include "core/body/clip.h"
+#include "core/kernels/kernels.h"
 
 namespace frm {
 namespace {
 
-/// Sums over the wet surface, in double so that thousands of small triangles do not lose the last digits of a large
-/// force.
-class WetSum {
-public:
-    explicit WetSum(bool buoyant) : buoyant_(buoyant) {}
+constexpr float infinite = std::numeric_limits<float>::infinity();
+/// Of the water under a body that is looked through for its highest and lowest: more cost more than they save.
+constexpr std::int32_t widest_look = 96;
 
-    /// The triangle whose pieces come next: its outward vector area and the length of that.
-    void begin(const Vec3f& vector_area, float area) { vector_area_ = vector_area, area_ = area; }
+/// The lowest and the highest that the water stands over the body, against the calm level, m.
+struct Range {
+    float low = 0, high = 0;
+    bool finite = true;
 
-    /// A wholly wet piece of the triangle. Pressure is linear over it, so that
-    ///   integral d dA = A (d1 + d2 + d3) / 3,  integral r d dA = A / 12 [(sum r)(sum d) + sum r d].
-    void operator()(const Corner& a, const Corner& b, const Corner& c, float share) {
-        const float area = share * area_;
-        wet_area += static_cast<double>(area);
-        height_moment += static_cast<double>(area * (a.at.z + b.at.z + c.at.z) * (1.0f / 3));
-        if (!buoyant_) return;
-        const Vec3f vector_area = vector_area_ * share;
-        const float depths = a.depth + b.depth + c.depth;
-        force += Vec3d(vector_area * (depths * (1.0f / 3)));
-        const Vec3f arm =
-            ((a.at + b.at + c.at) * depths + (a.at * a.depth + b.at * b.depth + c.at * c.depth)) * (1.0f / 12);
-        torque += Vec3d(cross(arm, vector_area));
-    }
-
-    Vec3d force, torque;  ///< per unit of density * gravity, and outward
-    double wet_area = 0;
-    double height_moment = 0;
-
-private:
-    bool buoyant_;
-    Vec3f vector_area_;
-    float area_ = 0;
+    bool flat() const { return low == high; }
 };
+
+HeightGrid heights_of(const Field& field) {
+    return {field.height_row(0), field.stride(), field.def().nx, field.def().ny, field.level()};
+}
+
+/// Where the centre of the body's box lies over the water.
+GridPlacement placement(const Body& body, const SurfaceView& surface) {
+    const float m = surface.cells_per_metre * body.def.scale;
+    const Vec3f &r0 = body.rotation.row0, &r1 = body.rotation.row1, &c = body.def.map->clusters.centre;
+    return {surface.origin.i,
+            surface.origin.j,
+            surface.origin.x + m * dot(r0, c),
+            surface.origin.y + m * dot(r1, c),
+            {m * r0.x, m * r0.y, m * r0.z},
+            {m * r1.x, m * r1.y, m * r1.z}};
+}
+
+float support(const float along[3], const Vec3f& half) {
+    return std::fabs(along[0]) * half.x + std::fabs(along[1]) * half.y + std::fabs(along[2]) * half.z;
+}
+
+Range range_over(const Body& body, const SurfaceView& surface, const GridPlacement& at) {
+    const HeightGrid grid = heights_of(*surface.field);
+    const Vec3f& half = body.def.map->clusters.half;
+    const float x = support(at.along_x, half) + 0.51f, y = support(at.along_y, half) + 0.51f;
+    if (!(x < widest_look && y < widest_look && std::fabs(at.x) < 1e6f && std::fabs(at.y) < 1e6f))
+        return {-infinite, infinite, true};
+    const auto first = [](float v) { return static_cast<std::int32_t>(std::floor(v)); };
+    Rect r{at.i + first(at.x - x), at.j + first(at.y - y), at.i + first(at.x + x) + 1, at.j + first(at.y + y) + 1};
+    if (r.i1 <= 0 || r.j1 <= 0 || r.i0 >= grid.nx || r.j0 >= grid.ny) return {};
+    const bool inside = r.i0 >= 0 && r.j0 >= 0 && r.i1 <= grid.nx && r.j1 <= grid.ny;
+    r = r.clipped(grid.nx, grid.ny);
+    Range range;
+    float odd = 0;
+    kernels().height_range(grid.height + r.j0 * grid.stride + r.i0, grid.stride, r.i1 - r.i0, r.j1 - r.j0, &range.low,
+                           &range.high, &odd);
+    range.finite = odd == 0;
+    range.low += grid.level, range.high += grid.level;
+    if (!inside) range.low = std::min(range.low, 0.0f), range.high = std::max(range.high, 0.0f);  // beyond the border
+    return range;
+}
+
+/// Sixteen lanes by a fixed tree.
+template <typename T>
+T sum_of(const float lanes[kernel_lanes]) {
+    T part[kernel_lanes];
+    for (std::size_t k = 0; k < kernel_lanes; ++k) part[k] = static_cast<T>(lanes[k]);
+    for (std::size_t w = kernel_lanes / 2; w > 0; w /= 2)
+        for (std::size_t k = 0; k < w; ++k) part[k] += part[k + w];
+    return part[0];
+}
+
+/// What is wet, in the map's lengths and the body's frame, about the centre of the body's box.
+struct Wet {
+    Vec3d force, torque;  ///< integrals of depth n dA and of X x n depth dA
+    double area = 0, depth = 0;
+};
+
+void add(Wet& wet, const WetLanes& sum) {
+    for (int c = 0; c < 3; ++c) {
+        wet.force[c] += sum_of<double>(sum.force[c]);
+        wet.torque[c] += sum_of<double>(sum.torque[c]);
+    }
+    wet.depth += sum_of<double>(sum.depth);
+}
+
+void set_sources(Body& body, float ratio) {
+    const Map& map = *body.def.map;
+    const float square = body.def.scale * body.def.scale;
+    for (std::size_t l = 0; l < body.sources.size(); ++l) {
+        body.sources[l].wet_ratio = ratio;
+        body.sources[l].wet_area = ratio * map.region_area[l] * square;
+    }
+    body.wet_sources = ratio > 0 ? static_cast<std::uint32_t>(body.sources.size()) : 0;
+}
+
+/// Forgets a body's wet surface, if it is not forgotten already.
+void set_dry(Body& body) {
+    body.clipped_triangles = 0;
+    if (body.wetness == Wetness::dry) return;
+    body.wetness = Wetness::dry;
+    set_sources(body, 0);
+    body.forces.buoyancy = {};
+    body.displaced_volume = body.wet_area = body.wet_height = 0;
+}
+
+/// The plane depth(X) = b + a . (X - centroid) over all of a surface.
+Wet whole_surface(const WetMoments& m, const BodyLevel& level) {
+    const Vec3f up(level.up[0], level.up[1], level.up[2]), c(m.centroid[0], m.centroid[1], m.centroid[2]);
+    const float b = level.level - dot(up, c);
+    Wet wet;
+    for (int k = 0; k < 3; ++k) {
+        const auto at = [&](int row, int column) { return static_cast<double>(m.moment[row][column]); };
+        const auto sum = [&](int column) {
+            return static_cast<double>(b) * at(0, column) - static_cast<double>(up.x) * at(1, column) -
+                   static_cast<double>(up.y) * at(2, column) - static_cast<double>(up.z) * at(3, column);
+        };
+        wet.force[k] = sum(k);
+        wet.torque[k] = sum(3 + k);
+    }
+    wet.area = static_cast<double>(m.area);
+    wet.depth = static_cast<double>(b) * wet.area;
+    return wet;
+}
+
+/// Cluster by cluster: those that are wholly wet by their moments, those that are cut triangle by triangle.
+Wet clipped_surface(Body& body, const BodyLevel& level, const HeightGrid* grid, const GridPlacement& at) {
+    const Map& map = *body.def.map;
+    const Clusters& clusters = map.clusters;
+    const Kernels& kernel = kernels();
+    const float square = body.def.scale * body.def.scale;
+    Wet wet;
+    OnLines<WetLanes> moments{}, clips{};
+    OnLines<ClusterPlanes> planes{};
+    alignas(64) float samples[4 * kernel_lanes];
+    float odd = 0, area = 0;
+    bool any = false, all = true;
+    std::size_t source = 0;
+    std::uint32_t clipped_batches = 0;
+    const auto finish_source = [&] {
+        SourceState& s = body.sources[source];
+        s.wet_ratio = all && any ? 1.0f : any ? std::min(1.0f, area / map.region_area[source]) : 0.0f;
+        s.wet_area = (all && any ? map.region_area[source] : area) * square;
+        body.wet_sources += s.wet_ratio > 0;
+        wet.area += static_cast<double>(all && any ? map.region_area[source] : area);
+        area = 0, any = false, all = true;
+        ++source;
+    };
+    const std::uint32_t count = clusters.count();
+    for (std::uint32_t first = 0; first < count; first += kernel_lanes) {
+        const ClusterBlock& block = clusters.blocks[first / kernel_lanes];
+        if (grid) {
+            kernel.sample_heights(grid, &at, block.point[0][0], block.point[1][0], block.point[2][0], 4 * kernel_lanes,
+                                  samples);
+        }
+        kernel.measure_clusters(&block, &level, grid ? samples : nullptr, &planes, &moments);
+        for (std::uint32_t k = 0; k < kernel_lanes && first + k < count; ++k) {
+            while (first + k >= clusters.region_begin[source + 1]) finish_source();
+            odd += planes.offset[k];
+            if (planes.state[k] == cluster_wet) {
+                area += block.area[k];
+                any = true;
+                continue;
+            }
+            if (planes.state[k] == cluster_dry) {
+                all = false;
+                continue;
+            }
+            alignas(64) float lanes[kernel_lanes] = {};
+            std::uint32_t cut = 0;
+            for (std::uint32_t b = clusters.first_batch[first + k]; b < clusters.first_batch[first + k + 1]; ++b) {
+                cut += kernel.clip_triangles(&clusters.batches[b], planes.offset[k], planes.slope[0][k],
+                                             planes.slope[1][k], planes.slope[2][k], &clips, lanes);
+                // Lanes are single: they go on in double before thousands of triangles cost digits.
+                if (++clipped_batches % 64 == 0) add(wet, clips), clips = {};
+            }
+            body.clipped_triangles += cut;
+            const float part = sum_of<float>(lanes);
+            // With no triangle cut they are all wet, or some are dry: those are more of the area than digits are.
+            const bool whole = cut == 0 && part > block.area[k] * (1 - 1e-5f);
+            area += whole ? block.area[k] : part;
+            all = all && whole;
+            any |= part > 0;
+        }
+    }
+    finish_source();
+    add(wet, moments);
+    add(wet, clips);
+    if (!std::isfinite(odd)) body.water_finite = false;
+    return wet;
+}
 
 }  // namespace
 
 void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid) {
     const Map& map = *body.def.map;
-    const float scale = body.def.scale;
-    // A wholly wet body's depths are counted from its own origin's: over a closed surface an even pressure has no force
-    // and no moment, and a metre of depth more would only cost digits.
-    float least = 0, most = 0, sum_of_depths = 0;
-    for (std::size_t i = 0; i < map.vertices.size(); ++i) {
-        body.local[i] = body.rotation.to_world(map.vertices[i] * scale);
-        body.depth[i] = surface.everywhere ? 1.0f : surface.depth_below_level(body.local[i]);
-        least = i == 0 ? body.depth[i] : std::min(least, body.depth[i]);
-        most = i == 0 ? body.depth[i] : std::max(most, body.depth[i]);
-        sum_of_depths += body.depth[i];
+    const float scale = body.def.scale, inverse = 1 / scale;
+    body.water_finite = true;
+    if (surface.everywhere) {
+        set_sources(body, 1);
+        body.wetness = Wetness::whole;
+        body.clipped_triangles = 0;
+        body.forces.buoyancy = {};
+        body.displaced_volume = 0;
+        body.wet_area = map.clusters.whole.area * scale * scale;
+        body.wet_height = 0;
+        return;
     }
-    body.water_finite = std::isfinite(sum_of_depths);
-    const bool all_wet = surface.everywhere || surface.level + least > 0, any_wet = all_wet || surface.level + most > 0;
-    if (!all_wet)
-        for (float& d : body.depth) d += surface.level;
 
-    WetSum sum(!surface.everywhere);
-    body.clipped_triangles = 0;
-    body.wet_sources = 0;
-    for (std::size_t l = 0; l < map.sources.size(); ++l) {
-        SourceState& source = body.sources[l];
-        source.wet_area = 0;
-        source.wet_ratio = 0;
-        if (!any_wet) continue;
-        const double before = sum.wet_area;
-        bool partly = false;
-        for (std::uint32_t t = map.region_begin[l]; t < map.region_begin[l + 1]; ++t) {
-            const auto& index = map.triangles[t];
-            if (!all_wet && !(body.depth[index[0]] > 0 || body.depth[index[1]] > 0 || body.depth[index[2]] > 0)) {
-                partly = true;
-                continue;
-            }
-            const Corner corner[3] = {{body.local[index[0]], body.depth[index[0]]},
-                                      {body.local[index[1]], body.depth[index[1]]},
-                                      {body.local[index[2]], body.depth[index[2]]}};
-            sum.begin(vector_area_of(corner[0].at, corner[1].at, corner[2].at), map.triangle_area[t] * scale * scale);
-            int wet = 3;
-            if (all_wet)
-                sum(corner[0], corner[1], corner[2], 1.0f);
-            else
-                wet = add_wet_part(corner, std::ref(sum));
-            partly |= wet < 3;
-            body.clipped_triangles += wet == 1 || wet == 2;
+    const Clusters& clusters = map.clusters;
+    const Vec3f arm = body.rotation.to_world(clusters.centre * scale), &up = body.rotation.row2;
+    const float centre_level = surface.level - arm.z, reach = clusters.radius * scale;
+    if (centre_level + surface.highest <= -reach) return set_dry(body);
+    const float along_up[3] = {up.x, up.y, up.z};
+    const float height = std::min(reach, support(along_up, clusters.half) * scale * (1 + 1e-6f));
+    Range range;
+    GridPlacement at{};
+    if (surface.field) {
+        at = placement(body, surface);
+        range = range_over(body, surface, at);
+        if (!range.finite) {
+            body.water_finite = false;
+            return;
         }
-        source.wet_area = static_cast<float>(sum.wet_area - before);
-        const float ratio = source.wet_area / (map.region_area[l] * scale * scale);
-        source.wet_ratio = partly ? std::min(1.0f, ratio) : 1.0f;
-        body.wet_sources += source.wet_ratio > 0;
+    }
+    if (centre_level + range.high <= -height) return set_dry(body);
+
+    // A wholly wet body's depths are counted from its own centre's: over a closed surface an even pressure has no force
+    // and no moment, and a metre of depth more would only cost digits.
+    const bool all_wet = centre_level + range.low > height;
+    const float plane = centre_level + (range.flat() ? range.low : 0.0f);  // else waves are sampled
+    // Under waves the clusters' planes are laid so far above the body that each counts as wet, whatever their slopes.
+    const float above = 4 * clusters.radius + (4 * (range.high - range.low) - range.low) * inverse;
+    const float rest = !all_wet ? plane * inverse : range.flat() ? 0.0f : above;
+    const BodyLevel level{rest, {up.x, up.y, up.z}, inverse};
+    Wet wet;
+    if (all_wet && range.flat()) {
+        body.clipped_triangles = 0;
+        if (body.wetness != Wetness::whole) set_sources(body, 1);
+        wet = whole_surface(clusters.whole, level);
+        body.wetness = Wetness::whole;
+    } else {
+        body.clipped_triangles = body.wet_sources = 0;
+        const HeightGrid grid = surface.field ? heights_of(*surface.field) : HeightGrid{};
+        wet = clipped_surface(body, level, surface.field && !range.flat() ? &grid : nullptr, at);
+        body.wetness = Wetness::partly;
+        if (all_wet) set_sources(body, 1), body.wetness = Wetness::whole;
     }
 
+    const double s = static_cast<double>(scale), volume = s * s * s;
     const double weight = -static_cast<double>(fluid.density) * static_cast<double>(fluid.gravity);
-    body.forces.buoyancy = {Vec3f(sum.force * weight), Vec3f(sum.torque * weight)};
-    body.displaced_volume = static_cast<float>(-sum.force.z);
-    body.wet_area = static_cast<float>(sum.wet_area);
-    body.wet_height = sum.wet_area > 0 ? static_cast<float>(sum.height_moment / sum.wet_area) : 0.0f;
+    const Vec3d force = wet.force * (volume * weight), torque = wet.torque * (volume * s * weight);
+    const Vec3f turned = body.rotation.to_world(Vec3f(force));
+    body.forces.buoyancy = {turned, body.rotation.to_world(Vec3f(torque)) + cross(arm, turned)};
+    body.displaced_volume = static_cast<float>(-dot(wet.force, Vec3d(up)) * volume);
+    body.wet_area = static_cast<float>(wet.area * s * s);
+    const float mean_depth = wet.area > 0 ? static_cast<float>(wet.depth / wet.area * s) : 0.0f;
+    body.wet_height = wet.area > 0 ? arm.z + level.level * scale - mean_depth : 0.0f;
 }
 
 }  // namespace frm

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/kernels/wet_kernels.h"
+
 namespace frm {
 
 /// What the absorbing layer keeps at both ends of a row, in whole 64-byte vectors: 1 where the layer is not.
@@ -51,6 +53,21 @@ struct Kernels {
     void (*scale)(float* x, std::ptrdiff_t count, float factor);
     /// The absorbing layer's ends of a row.
     void (*scale_ends)(float* x, const float* left, const float* right, const WaveDamp& damp);
+
+    // wet_surface.inl
+    void (*sample_heights)(const HeightGrid* grid, const GridPlacement* at, const float* x, const float* y,
+                           const float* z, std::size_t count, float* out);
+    void (*measure_clusters)(const ClusterBlock* block, const BodyLevel* level, const float* samples,
+                             ClusterPlanes* planes, WetLanes* sum);
+    std::uint32_t (*clip_triangles)(const TriangleBatch* batch, float offset, float ax, float ay, float az,
+                                    WetLanes* sum, float* area);
+    void (*height_range)(const float* h, std::ptrdiff_t stride, std::ptrdiff_t columns, std::ptrdiff_t rows,
+                         float* least, float* most, float* odd);
+    // footprint_rows.inl
+    void (*slice_elements)(const ElementBlock* block, const SliceLevel* level, float depth, float ux, float uy,
+                           float uz, float* laid, float* left);
+    void (*refine_row)(float* fine, const float* near, const float* far, std::ptrdiff_t count);
+    void (*add_change_row)(float* h, const float* now, const float* before, std::ptrdiff_t count);
 };
 
 /// The best for this machine; the same on every call.

@@ -20,8 +20,8 @@ Map::Map(std::pmr::memory_resource* memory)
       fluctuation(memory),
       spin(memory),
       provenance(memory),
-      triangle_area(memory),
       region_area(memory),
+      clusters(memory),
       log_speed(memory),
       levels(memory),
       file(memory) {}
@@ -166,14 +166,13 @@ void Map::complete() {
         }
     }
 
-    triangle_area.clear();
     region_area.clear();
     for (std::size_t l = 0; l < sources.size(); ++l) {
         double sum = 0;
         for (std::uint32_t t = region_begin[l]; t < region_begin[l + 1]; ++t) {
             const Vec3f& a = vertices[triangles[t][0]];
-            triangle_area.push_back(0.5f * length(cross(vertices[triangles[t][1]] - a, vertices[triangles[t][2]] - a)));
-            sum += static_cast<double>(triangle_area.back());
+            const Vec3f normal = cross(vertices[triangles[t][1]] - a, vertices[triangles[t][2]] - a);
+            sum += static_cast<double>(0.5f * length(normal));
         }
         region_area.push_back(static_cast<float>(sum));
         require(sum > 0, "a region has no area");
@@ -184,6 +183,7 @@ void Map::complete() {
     measure_levels(*this);
     shape = shape_of(*this);
     require(shape.volume > 0, "the surface encloses no volume");
+    clusters.build(*this);
 }
 
 }  // namespace frm

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/map/clusters.h"
 #include "core/map/directions.h"
 #include "core/math/vec.h"
 
@@ -103,8 +104,8 @@ struct Map {
 
     // Filled by complete().
     MapShape shape;
-    std::pmr::vector<float> triangle_area;  ///< m^2
-    std::pmr::vector<float> region_area;    ///< the sum of its triangles'
+    std::pmr::vector<float> region_area;    ///< m^2, the sum of its triangles'
+    Clusters clusters;                      ///< of the triangles
     std::uint32_t base = 0;                 ///< which of `speeds` is the base speed
     std::pmr::vector<float> log_speed;      ///< [speed]; empty for one speed
     std::pmr::vector<FaceLevel> levels;     ///< [face of fluctuation_directions]

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/kernels/kernels.h"
+
 namespace frm {
 namespace {
 
@@ -20,38 +22,38 @@ std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
 
 void displace_water(Footprint& footprint, Field& water) {
     if (footprint.first) return;
+    if (!footprint.changed()) return;
     water.raise(footprint.rest_change());
     Rect changed = footprint.wet();
     changed.include(footprint.wet_before());
-    if (changed.empty()) return;
-    const std::int32_t n = footprint.size();
-    const float* now = footprint.thickness();
-    const float* before = footprint.thickness_before();
-    for (std::int32_t j = changed.j0; j < changed.j1; ++j)
-        for (std::int32_t i = changed.i0; i < changed.i1; ++i)
-            footprint.own.height_row(j)[i] += now[at(i, j, n)] - before[at(i, j, n)];
-    const Rect r = inside_water(footprint, water, changed);
-    water.wake(r.moved(footprint.i0(), footprint.j0()));
-    for (std::int32_t j = r.j0; j < r.j1; ++j)
-        for (std::int32_t i = r.i0; i < r.i1; ++i)
-            water.height_row(j + footprint.j0())[i + footprint.i0()] += now[at(i, j, n)] - before[at(i, j, n)];
+    const auto add = kernels().add_change_row;
+    const auto raise = [&](Field& field, const Rect& r, std::int32_t di, std::int32_t dj) {
+        field.wake(r.moved(di, dj));
+        for (std::int32_t j = r.j0; j < r.j1; ++j)
+            add(field.height_row(j + dj) + (r.i0 + di), footprint.thickness().row(j) + r.i0,
+                footprint.thickness_before_row(j) + r.i0, r.i1 - r.i0);
+    };
+    raise(footprint.own, changed, 0, 0);
+    if (const Rect r = inside_water(footprint, water, changed); !r.empty())
+        raise(water, r, footprint.i0(), footprint.j0());
 }
 
 void withdraw_body(Footprint& footprint, Field& water) {
-    const std::int32_t n = footprint.size();
     const float share = footprint.deposited_share();
     water.raise(-footprint.rest_before() * static_cast<double>(share));
     const Rect r = inside_water(footprint, water, footprint.wet_before());
+    if (r.empty()) return;
     water.wake(r.moved(footprint.i0(), footprint.j0()));
-    for (std::int32_t j = r.j0; j < r.j1; ++j)
-        for (std::int32_t i = r.i0; i < r.i1; ++i)
-            water.height_row(j + footprint.j0())[i + footprint.i0()] -=
-                footprint.thickness_before()[at(i, j, n)] * share;
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        float* row = water.height_row(j + footprint.j0()) + footprint.i0();
+        const float* before = footprint.thickness_before_row(j);
+        for (std::int32_t i = r.i0; i < r.i1; ++i) row[i] -= before[i] * share;
+    }
 }
 
 void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, const Vec3f& angular, float z) {
     const std::int32_t n = footprint.size();
-    const float* thickness = footprint.thickness();
+    const float* thickness = footprint.thickness().data();
     // The spline spreads a thin body over three columns: those with a fifth of the largest thickness are inside.
     float largest = 0;
     const Rect& wet = footprint.wet();

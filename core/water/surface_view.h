@@ -9,15 +9,11 @@ namespace frm {
 struct SurfaceView {
     bool everywhere = false;       ///< fluid without a surface: all is wet and nothing is buoyant
     float level = 0;               ///< of the calm surface above the body's origin, m
+    float highest = 3e38f;         ///< no wave stands higher above it, m: what is known without looking at the water
     const Field* field = nullptr;  ///< null: flat
     GridOrigin origin;             ///< the body's origin in the field
     float cells_per_metre = 0;
 
-    /// Depth of a point less `level`: small numbers also for a body that is deep.
-    float depth_below_level(const Vec3f& p) const {
-        const float wave = field ? field->height_at(origin, p.x * cells_per_metre, p.y * cells_per_metre) : 0.0f;
-        return wave - p.z;
-    }
     /// Horizontal velocity of the water; u_z is taken as zero (section 6.3).
     Vec3f velocity(const Vec3f& p) const {
         Vec3f v;

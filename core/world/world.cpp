@@ -18,6 +18,7 @@ void forget_forces(Body& body) {
     body.forces = {};
     body.displaced_volume = body.wet_area = body.relative_speed = 0;
     for (SourceState& source : body.sources) source = {};
+    body.wetness = Wetness::unknown;
 }
 
 }  // namespace
@@ -34,7 +35,7 @@ Water& World::create_water(const WaterDef& def) {
         if (observer_) observer_->water_created(*this);
         water_->offer_snapshot(ticks_, time_);
     } catch (...) {
-        for (const auto& body : bodies_) body->footprint.reset();
+        for (const auto& body : bodies_) body->elements.reset(), body->footprint.reset();
         water_.reset();
         throw;
     }
@@ -42,7 +43,7 @@ Water& World::create_water(const WaterDef& def) {
 }
 
 void World::destroy_water() {
-    for (const auto& body : bodies_) body->footprint.reset();
+    for (const auto& body : bodies_) body->elements.reset(), body->footprint.reset();
     water_.reset();
     if (observer_) observer_->water_destroyed(*this);
 }
@@ -73,7 +74,10 @@ Body& World::create_body(const BodyDef& def, std::uint32_t id) {
     return *bodies_.back();
 }
 
-void World::give_footprint(Body& body) { body.footprint.emplace(water_->def().field, body.radius(), memory_); }
+void World::give_footprint(Body& body) {
+    body.footprint.emplace(water_->def().field, body.radius(), memory_);
+    body.elements.emplace(*body.def.map, water_->def().field.cell / body.def.scale, memory_);
+}
 
 void World::destroy_body(Body& body) {
     if (body.footprint && def_.model & model_displacement) withdraw_body(*body.footprint, water_->field);
@@ -93,7 +97,9 @@ SurfaceView World::view_from(const Body& body) const {
     SurfaceView view;
     view.everywhere = def_.everywhere;
     view.level = static_cast<float>(def_.level - body.def.pose.position.z);
+    view.highest = 0;
     if (water_) {
+        view.highest = 3e38f;
         view.field = &water_->field;
         view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
         view.cells_per_metre = 1.0f / water_->def().field.cell;
@@ -126,7 +132,7 @@ bool World::tick(float dt) {
             body->footprint->begin(at.i, at.j, view.origin, spread ? &water_->field : nullptr);
         }
         measure_wet_surface(*body, view, def_.fluid);
-        if (body->footprint) lay_displacement(*body, view.level, spread);
+        if (body->footprint) lay_displacement(*body, view.level, spread, (def_.skip & skip_still_bodies) != 0);
         look_up_resistance(*body, view, def_.fluid, dt, def_.model);
         sum_forces(*body, def_.fluid);
         if (!body->water_finite || !finite(body->forces)) {
@@ -157,6 +163,7 @@ void World::move_water(float dt, std::uint32_t substeps) {
     const bool displaces = (def_.model & model_displacement) != 0;
     if (displaces)
         for (const auto& body : bodies_) displace_water(*body->footprint, field);
+    for (const auto& body : bodies_) body->footprint->gather_pressure();
     pushes_.clear();
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
     for (const auto& body : bodies_)

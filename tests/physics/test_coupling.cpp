@@ -269,3 +269,32 @@ TEST_CASE("the paper's rule stays bounded where steps are as long as they may be
     }
     CHECK(largest(water.field) < 0.5f);
 }
+
+TEST_CASE("a body that stays keeps what it has laid, and the waves are the same", "[coupling]") {
+    // A slow heave: of 0.1 mm a tick at most, on cells of 50 mm, so that most ticks near the turning points are kept.
+    const auto waves = [](std::uint32_t skip) {
+        WorldDef def;
+        def.skip = skip;
+        World world = test::world_of(def);
+        Water& water = world.create_water(test::water_of(96, 0.05f, 0.5f, Border::reflecting));
+        Body& body = world.create_body(body_of(slab_map(), {0, 0, 0}));
+        for (int t = 0; t < 800; ++t) {
+            world.set_motion(body, {{0, 0, 0.01 * std::sin(0.002 * t * 2)}, {}}, {});
+            world.tick(0.002f);
+        }
+        std::vector<float> out(water.field.cells());
+        water.field.copy_heights(out.data());
+        return out;
+    };
+    const std::vector<float> kept = waves(skip_default), laid = waves(skip_default & ~skip_still_bodies);
+    double most = 0, square = 0;
+    bool same = true;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        most = std::fmax(most, std::fabs(static_cast<double>(laid[i])));
+        square = std::fmax(square, std::fabs(static_cast<double>(kept[i] - laid[i])));
+        same = same && kept[i] == laid[i];
+    }
+    CHECK_FALSE(same);  // it did skip
+    CHECK(most > 1e-4);
+    CHECK(square < 5e-5);  // a thousandth of a cell, all of it under the body
+}

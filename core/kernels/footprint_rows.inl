@@ -1,0 +1,66 @@
+// What a body lays on the water: slices of its volume on grids of several cell sizes, and rows of those.
+
+static float clamp_to(float v, float high) {
+    const float up = v > 0 ? v : 0.0f;
+    return up < high ? up : high;
+}
+
+/// Of a column from the surface down to where the width asked for is w: how much of it, in width, a level of cell c
+/// takes. Slices count in full at w = c, less towards c / 2 and 2 c in a straight line; the finest level takes all that is
+/// narrower, the widest c^2 / w^2 of what is wider, as K(0) goes down. This is the integral of that from 0 to w.
+/// `finest` and `widest` are 0 or 1: numbers, so that every lane does the same.
+static float slices_above(float w, float c, float inverse, float finest, float widest) {
+    const float rise = clamp_to(w - 0.5f * c, 0.5f * c), fall = clamp_to(w - c, c);
+    const float over = w > c ? w : c, under = w < c ? w : c;
+    const float begun = finest * under + (1.0f - finest) * (rise * rise * inverse);
+    return begun + (widest * (c - c * c / over) + (1.0f - widest) * (fall - 0.5f * inverse * fall * fall));
+}
+
+/// What sixteen elements of a body, `depth` (of the body's centre) below the calm surface, lay on a level: the wet part of
+/// each's column, in shares of the element's volume times that; and, at the widest level, what it leaves to all of the
+/// water. An element stands for a column as high as it is thick: h = sqrt(sum (up_k)^2 spread_k).
+static void slice_elements(const ElementBlock* block, const SliceLevel* level, float depth, float ux, float uy, float uz,
+                           float* __restrict laid, float* __restrict left) {
+    const float c = level->cell, inverse = 1.0f / c, width = level->width;
+    const float finest = level->finest, widest = level->widest, spread = level->spread;
+    const float* spread_x = block->spread[0];
+    const float* spread_y = block->spread[1];
+    const float* spread_z = block->spread[2];
+    const float* at_x = block->x;
+    const float* at_y = block->y;
+    const float* at_z = block->z;
+    const float* volume = block->volume;
+    FRM_EACH_LANE
+    for (std::size_t k = 0; k < kernel_lanes; ++k) {
+        const float square =
+            ux * ux * spread_x[k] + uy * uy * spread_y[k] + uz * uz * spread_z[k];
+        const float half = width * sqrtf(square > 0 ? square : 0.0f), h = half > 0.02f ? half : 0.02f;
+        const float middle = width * (depth - (ux * at_x[k] + uy * at_y[k] + uz * at_z[k]));
+        const float high = middle - h > 0 ? middle - h : 0.0f, low = middle + h > 0 ? middle + h : 0.0f;
+        const float taken = slices_above(low, c, inverse, finest, widest) - slices_above(high, c, inverse, finest, widest);
+        const float per = volume[k] / (2.0f * h), wet = low - high;
+        laid[k] = per * (spread * taken + (1.0f - spread) * wet);
+        const float beyond = (low > c ? low - c : 0.0f) - (high > c ? high - c : 0.0f);
+        const float narrow = (c - c * c / (low > c ? low : c)) - (c - c * c / (high > c ? high : c));
+        left[k] = spread * widest * per * (beyond - narrow);
+    }
+}
+
+/// One row of a grid from two of a grid of twice the cell: a quadratic spline in terms of the finer ones (weights 3/4 and
+/// 1/4; Chaikin 1974). near and far are the coarse rows from their cell `first` - 1 on, fine the row from cell 2 `first` - 1
+/// on; 2 count + 2 fine cells come from count + 2 coarse ones, of which the first and the last are empty.
+static void refine_row(float* __restrict fine, const float* __restrict near, const float* __restrict far,
+                       std::ptrdiff_t count) {
+    float row[kernel_longest_row];
+    for (std::ptrdiff_t i = 0; i < count + 2; ++i) row[i] = 0.75f * near[i] + 0.25f * far[i];
+    for (std::ptrdiff_t i = 0; i < count + 1; ++i) {
+        fine[2 * i] += 0.75f * row[i] + 0.25f * row[i + 1];
+        fine[2 * i + 1] += 0.75f * row[i + 1] + 0.25f * row[i];
+    }
+}
+
+/// h[i] += now[i] - before[i]
+static void add_change_row(float* __restrict h, const float* __restrict now, const float* __restrict before,
+                           std::ptrdiff_t count) {
+    for (std::ptrdiff_t i = 0; i < count; ++i) h[i] += now[i] - before[i];
+}

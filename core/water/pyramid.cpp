@@ -1,0 +1,98 @@
+#include "core/water/pyramid.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/kernels/kernels.h"
+
+namespace frm {
+namespace {
+
+/// Smooth in the position, and the weights add up to one.
+void spline_weights(float offset, float w[3]) {
+    w[0] = 0.5f * (0.5f - offset) * (0.5f - offset);
+    w[1] = 0.75f - offset * offset;
+    w[2] = 0.5f * (0.5f + offset) * (0.5f + offset);
+}
+
+}  // namespace
+
+Pyramid::Pyramid(std::int32_t size, std::pmr::memory_resource* memory)
+    : grid_{{{std::pmr::vector<float>(memory), 0, {}},
+             {std::pmr::vector<float>(memory), 0, {}},
+             {std::pmr::vector<float>(memory), 0, {}},
+             {std::pmr::vector<float>(memory), 0, {}}}} {
+    for (int k = 0; k < levels; ++k) {
+        Grid& grid = grid_[static_cast<std::size_t>(k)];
+        grid.size = size >> k;
+        grid.value.assign(static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size), 0.0f);
+    }
+}
+
+void Pyramid::clear() {
+    for (Grid& grid : grid_) {
+        for (std::int32_t j = grid.wet.j0; j < grid.wet.j1; ++j) {
+            float* row = grid.value.data() + static_cast<std::ptrdiff_t>(j) * grid.size;
+            std::fill(row + grid.wet.i0, row + grid.wet.i1, 0.0f);
+        }
+        grid.wet = {};
+    }
+}
+
+// The outermost cells stay empty, so that gather() finds a neighbour of everything that is not zero.
+bool Pyramid::add(int level, float x, float y, float amount) {
+    Grid& grid = grid_[static_cast<std::size_t>(level)];
+    const auto end = static_cast<float>(grid.size - 2);
+    if (!(x >= 2.0f && y >= 2.0f && x < end && y < end)) return false;
+    const auto i = static_cast<std::int32_t>(x), j = static_cast<std::int32_t>(y);
+    float wx[3], wy[3];
+    spline_weights(x - static_cast<float>(i) - 0.5f, wx);
+    spline_weights(y - static_cast<float>(j) - 0.5f, wy);
+    float* row = grid.value.data() + static_cast<std::ptrdiff_t>(j - 1) * grid.size + (i - 1);
+    for (int q = 0; q < 3; ++q, row += grid.size) {
+        const float part = amount * wy[q];
+        row[0] += part * wx[0];
+        row[1] += part * wx[1];
+        row[2] += part * wx[2];
+    }
+    grid.wet.include({i - 1, j - 1, i + 2, j + 2});
+    return true;
+}
+
+bool Pyramid::add_wide(float x, float y, float width, float amount) {
+    const float w = width * (1.0f / width_of_spline);
+    int level = 0;
+    while (level < levels - 1 && w >= static_cast<float>(2 << level)) ++level;
+    const auto cell = static_cast<float>(1 << level);
+    const float share = level < levels - 1 && w > cell ? (w - cell) / cell : 0.0f;  // of the next level
+    const float scale = 1.0f / cell, each = amount * scale * scale;
+    bool laid = add(level, x * scale, y * scale, each * (1.0f - share));
+    if (share > 0) laid = add(level + 1, x * (0.5f * scale), y * (0.5f * scale), 0.25f * each * share) && laid;
+    return laid;
+}
+
+void Pyramid::gather() {
+    const auto refine = kernels().refine_row;
+    for (std::size_t k = levels - 1; k > 0; --k) {
+        const Grid& from = grid_[k];
+        if (from.wet.empty()) continue;
+        Grid& to = grid_[k - 1];
+        const Rect& w = from.wet;
+        const Rect r{2 * w.i0 - 1, 2 * w.j0 - 1, 2 * w.i1 + 1, 2 * w.j1 + 1};
+        for (std::int32_t j = r.j0; j < r.j1; ++j) {
+            const std::int32_t near = j >> 1, far = (j & 1) != 0 ? near + 1 : near - 1;
+            const float* rows = from.value.data() + (w.i0 - 1);
+            refine(to.value.data() + static_cast<std::ptrdiff_t>(j) * to.size + r.i0,
+                   rows + static_cast<std::ptrdiff_t>(near) * from.size,
+                   rows + static_cast<std::ptrdiff_t>(far) * from.size, w.i1 - w.i0);
+        }
+        to.wet.include(r);
+    }
+}
+
+void Pyramid::swap_finest(std::pmr::vector<float>& values, Rect& wet) {
+    std::swap(grid_[0].value, values);
+    std::swap(grid_[0].wet, wet);
+}
+
+}  // namespace frm
