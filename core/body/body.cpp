@@ -8,7 +8,8 @@ Body::Body(const BodyDef& d, std::uint32_t number, std::pmr::memory_resource* me
       rotation(d.pose.rotation),
       local(d.map->vertices.size(), Vec3f(), memory),
       depth(d.map->vertices.size(), 0.0f, memory),
-      sources(d.map->sources.size(), SourceState(), memory) {}
+      sources(d.map->sources.size(), SourceState(), memory),
+      streams(d.map->sources.size(), memory) {}
 
 Vec3f Body::centre() const { return (def.map->shape.low + def.map->shape.high) * (0.5f * def.scale); }
 

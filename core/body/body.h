@@ -7,9 +7,11 @@
 #include <optional>
 #include <vector>
 
+#include "core/body/source_streams.h"
 #include "core/map/map.h"
 #include "core/math/quat.h"
 #include "core/model.h"
+#include "core/skip.h"
 #include "core/water/footprint.h"
 
 namespace frm {
@@ -50,11 +52,15 @@ struct Fluid {
     float viscosity = 1e-6f;  ///< kinematic
 };
 
-/// What is remembered of one haptic source between ticks, and of the last one for those who look.
+/// What is remembered of one haptic source between ticks.
 struct SourceState {
-    float map_time = 0;        ///< s of Eq. 6
-    float wet_area = 0;        ///< m^2
-    float wet_ratio = 0;       ///< alpha of Eq. 6
+    float map_time = 0;   ///< s of Eq. 6
+    float wet_area = 0;   ///< m^2
+    float wet_ratio = 0;  ///< alpha of Eq. 6
+};
+
+/// What the last tick found at a source.
+struct SourceReading {
     Vec3f position;            ///< local: world axes, origin at the body
     Vec3f relative_velocity;   ///< of the water against the source, world axes
     Vec3f pressure, friction;  ///< N, world axes
@@ -69,11 +75,16 @@ struct Body {
     std::pmr::vector<Vec3f> local;  ///< vertices, scaled and turned: world axes, origin at the body
     std::pmr::vector<float> depth;  ///< of each vertex
     std::pmr::vector<SourceState> sources;
+    SourceStreams streams;  ///< of the last tick
     std::optional<Footprint> footprint;  ///< while the world has water
 
     Forces forces;
     float displaced_volume = 0, wet_area = 0, relative_speed = 0;
     std::uint32_t wet_sources = 0, clipped_triangles = 0;
+    /// Sources of the last tick whose friction or fluctuation was left out (core/skip.h).
+    struct {
+        std::uint32_t friction = 0, steady = 0;
+    } skipped;
     bool water_finite = true;  ///< the surface around it is a finite number
     float wet_height = 0;      ///< of the wet surface's centroid above the origin, m
 
@@ -93,8 +104,12 @@ void lay_displacement(Body& body, float level, bool spread);
 /// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). `model` says by
 /// its bits: own_waves, that the water's velocity is taken without what the body itself made; displacement, that the
 /// pressure reaches the surface the wider the deeper its source is; fluctuation, speeds and spin, what of the map is
-/// used beyond the paper's.
-void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, std::uint32_t model);
+/// used beyond the paper's. `skip`: what is left out where it does not count (core/skip.h).
+void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, std::uint32_t model,
+                        std::uint32_t skip);
+
+/// Source `l` as the last tick found it; nothing but its position where it was dry.
+SourceReading read_source(const Body& body, std::uint32_t l);
 
 /// Weight, and the sum of the parts (Eq. 4).
 void sum_forces(Body& body, const Fluid& fluid);

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 
+#include "core/kernels/lookup.h"
+
 namespace frm {
 
 struct Kernels {
@@ -16,6 +18,10 @@ struct Kernels {
     /// h[i] -= factor * ((u[i + 1] - u[i]) + (above[i] - below[i])) for i < count: Eq. 8 along a row of cells.
     void (*wave_height_row)(float* h, const float* u, const float* below, const float* above, std::ptrdiff_t count,
                             float factor);
+    /// Eq. 6 for sources `first` to first + 15, and their forces added to `total`. Where `skip_friction` is set, the
+    /// friction half of the forces and sums is left as it was.
+    void (*look_up_block)(const LookupTable& map, const LookupMotion& motion, LookupBlock& block, std::size_t first,
+                          LookupSum& total);
 };
 
 /// The best for this machine; the same on every call.

@@ -24,6 +24,7 @@ Map::Map(std::pmr::memory_resource* memory)
       region_area(memory),
       log_speed(memory),
       levels(memory),
+      tables(memory),
       file(memory) {}
 
 namespace {
@@ -182,6 +183,7 @@ void Map::complete() {
     if (speeds.size() > 1)
         for (const float u : speeds) log_speed.push_back(logarithm(u));
     measure_levels(*this);
+    tables.fill(*this);
     shape = shape_of(*this);
     require(shape.volume > 0, "the surface encloses no volume");
 }

@@ -18,6 +18,7 @@ void forget_forces(Body& body) {
     body.forces = {};
     body.displaced_volume = body.wet_area = body.relative_speed = 0;
     for (SourceState& source : body.sources) source = {};
+    body.streams.forget();
 }
 
 }  // namespace
@@ -124,7 +125,7 @@ bool World::tick(float dt) {
         }
         measure_wet_surface(*body, view, def_.fluid);
         if (body->footprint) lay_displacement(*body, view.level, spread);
-        look_up_resistance(*body, view, def_.fluid, dt, def_.model);
+        look_up_resistance(*body, view, def_.fluid, dt, def_.model, def_.skip);
         sum_forces(*body, def_.fluid);
         if (!body->water_finite || !finite(body->forces)) {
             forget_forces(*body);

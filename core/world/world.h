@@ -16,6 +16,7 @@ struct WorldDef {
     bool everywhere = false;  ///< fluid without a surface
     double level = 0;         ///< of the calm surface, m
     Fluid fluid;
+    std::uint32_t skip = skip_default;  ///< core/skip.h
 };
 
 class World;
