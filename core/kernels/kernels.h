@@ -18,6 +18,9 @@ struct Kernels {
     /// h[i] -= factor * ((u[i + 1] - u[i]) + (above[i] - below[i])) for i < count: Eq. 8 along a row of cells.
     void (*wave_height_row)(float* h, const float* u, const float* below, const float* above, std::ptrdiff_t count,
                             float factor);
+    /// to[j stride + i] += factor * y[j] * x[i] for i < columns, j < rows.
+    void (*add_product)(float* to, std::ptrdiff_t stride, const float* x, const float* y, std::ptrdiff_t columns,
+                        std::ptrdiff_t rows, float factor);
     /// Eq. 6 for sources `first` to first + 15, and their forces added to `total`. Where `skip_friction` is set, the
     /// friction half of the forces and sums is left as it was.
     void (*look_up_block)(const LookupTable& map, const LookupMotion& motion, LookupBlock& block, std::size_t first,

@@ -15,6 +15,7 @@ namespace frm::FRM_KERNEL_SET {
 #include "core/math/logarithm.h"  // a copy of its own, as frm::<set>::frm::logarithm
 
 #include "core/kernels/wave_rows.inl"
+#include "core/kernels/product.inl"
 #include "core/kernels/eight.inl"
 #include "core/kernels/lookup.inl"
 
@@ -26,6 +27,7 @@ const Kernels kernels{
     FRM_KERNEL_NAME(FRM_KERNEL_SET),
     wave_velocity_row,
     wave_height_row,
+    add_product,
     look_up_block,
 };
 }  // namespace frm::FRM_KERNEL_SET

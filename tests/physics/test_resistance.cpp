@@ -1,4 +1,5 @@
 // Eq. 6: its three scalings, torque, and the similarity laws.
+#include <algorithm>
 #include <cmath>
 
 #include "core/map/lookup.h"
@@ -281,4 +282,43 @@ TEST_CASE("a dry source feels nothing of the spin", "[resistance]") {
         CHECK(read_source(body, l).pressure == Vec3f());
     }
     CHECK(dry > 0);
+}
+
+TEST_CASE("a source's pressure lies on the water as a Gaussian whose sum is the force", "[resistance]") {
+    const FieldDef water = test::water_of(200, 0.025f, 1).field;
+    Footprint footprint(water, 0.3f, test::memory());
+    const double cell = static_cast<double>(water.cell);
+    for (const float depth : {0.0f, 0.02f, 0.05f, 0.1f, 0.13f}) {
+        for (const float shift : {0.1f, 0.45f, 0.95f}) {
+            const GridOrigin origin{100, 100, shift, 0.7f};
+            footprint.begin(100, 100, origin, nullptr);
+            const float p = 1234, area = 0.004f;
+            footprint.splat_pressure({0.05f, -0.11f, 0}, p, area, depth);
+            const double d = static_cast<double>(depth) * 1.47;
+            const double width = std::max(0.7, std::sqrt(0.25 * static_cast<double>(area) + d * d) / cell);
+            const GridOrigin at = footprint.body_in_window();
+            const double x = at.i + static_cast<double>(at.x) + 0.05 / cell, y = at.j + static_cast<double>(at.y) - 0.11 / cell;
+            const std::int32_t n = footprint.size(), reach = static_cast<std::int32_t>(std::ceil(3 * width));
+            const auto in_reach = [&](std::int32_t i, double middle) {
+                return std::abs(i - static_cast<std::int32_t>(std::floor(middle))) <= reach;
+            };
+            const auto weight = [&](std::int32_t i, double middle) {
+                return in_reach(i, middle) ? std::exp(-0.5 * std::pow((i + 0.5 - middle) / width, 2)) : 0.0;
+            };
+            double sum_x = 0, sum_y = 0, sum = 0, worst = 0;
+            for (std::int32_t i = 0; i < n; ++i) sum_x += weight(i, x), sum_y += weight(i, y);
+            const double amount = static_cast<double>(p * area) / (cell * cell * sum_x * sum_y);
+            for (std::int32_t j = 0; j < n; ++j) {
+                for (std::int32_t i = 0; i < n; ++i) {
+                    const double found = static_cast<double>(footprint.pressure()[j * n + i]);
+                    sum += found * cell * cell;
+                    worst = std::max(worst, std::fabs(found - amount * weight(i, x) * weight(j, y)));
+                }
+            }
+            INFO("depth " << depth << " shift " << shift);
+            CHECK(sum == Approx(static_cast<double>(p * area)).epsilon(1e-5));
+            CHECK(worst < 2e-5 * amount);
+            footprint.end();
+        }
+    }
 }
