@@ -43,6 +43,12 @@ struct BodyDef {
     Vec3f centre_of_mass;  ///< body frame, not scaled
     Pose pose;
     Twist twist;
+    /// The resistance may be off by so much, N (its torque by that times the distance of the furthest source): where
+    /// that suffices, groups of sources are looked up as one. 0: every source by itself.
+    float error_budget = 0;
+    /// What looking the resistance up may cost, us, counted in lookups of a fixed price and not by the clock, which would
+    /// not give the same bits twice. 0: no limit. Goes before error_budget.
+    float time_budget = 0;
 };
 
 /// The fluid that a body is in.
@@ -75,7 +81,7 @@ struct Body {
     std::pmr::vector<Vec3f> local;  ///< vertices, scaled and turned: world axes, origin at the body
     std::pmr::vector<float> depth;  ///< of each vertex
     std::pmr::vector<SourceState> sources;
-    SourceStreams streams;  ///< of the last tick
+    SourceStreams streams;               ///< of the last tick
     std::optional<Footprint> footprint;  ///< while the world has water
 
     Forces forces;
@@ -85,6 +91,15 @@ struct Body {
     struct {
         std::uint32_t friction = 0, steady = 0;
     } skipped;
+    /// The level of detail of the last tick.
+    struct {
+        std::uint32_t groups = 0;  ///< 0: every source by itself
+        float error = 0;           ///< N, the bound on what that costs
+        bool over_budget = false;  ///< the time did not suffice for error_budget
+    } detail;
+    float map_time_owed = 0;   ///< s, to all wet sources, of ticks that looked up groups
+    bool all_wet = false;      ///< every wet ratio is 1
+    bool pushes = true;        ///< it is near enough to the surface to push it
     bool water_finite = true;  ///< the surface around it is a finite number
     float wet_height = 0;      ///< of the wet surface's centroid above the origin, m
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/body/body.h"
+#include "core/body/resistance.h"
 #include "core/kernels/kernels.h"
 
 namespace frm {
@@ -53,9 +53,10 @@ float sample_water(const Body& body, const SurfaceView& surface, const SurfaceVi
 /// A block's inputs: wet ratios and map times of its sources, and water at rest.
 void begin_block(const Body& body, std::size_t first, LookupBlock& block) {
     const std::size_t count = std::min(lookup_block, body.sources.size() - first);
+    block.count = static_cast<std::uint32_t>(count);
     for (std::size_t s = 0; s < count; ++s) {
         block.wet[s] = body.sources[first + s].wet_ratio;
-        block.time[s] = body.sources[first + s].map_time;
+        block.time[s] = body.sources[first + s].map_time + body.map_time_owed;
     }
     for (std::size_t s = 0; s < lookup_block; ++s) block.x[s] = block.y[s] = block.z[s] = 0;
 }
@@ -103,30 +104,38 @@ float largest_ratio(const Body& body, float water, const LookupMotion& m) {
 }
 
 /// The part of the sums that is a torque about the body's origin: sum of position x force, from the sums of each
-/// component of the position times the force.
+/// component of the position times the force, and those of groups about their centres.
 Vec3f torque_of(const LookupSum& sum, int first, float scale) {
-    const float *x = sum.x.v + first, *y = sum.y.v + first, *z = sum.z.v + first;
-    return Vec3f(y[2] - z[1], z[0] - x[2], x[1] - y[0]) * scale;
+    const float *x = sum.x.v + first, *y = sum.y.v + first, *z = sum.z.v + first, *own = sum.torque.v + first;
+    return Vec3f((y[2] - z[1]) + own[0], (z[0] - x[2]) + own[1], (x[1] - y[0]) + own[2]) * scale;
 }
+
+}  // namespace
 
 Wrench wrench_of(const Body& body, const LookupSum& sum, int first) {
     const float* f = sum.force.v + first;
     return {body.rotation.to_world({f[0], f[1], f[2]}), body.rotation.to_world(torque_of(sum, first, body.def.scale))};
 }
 
-}  // namespace
-
 void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, std::uint32_t model,
                         std::uint32_t skip) {
     const Map& map = *body.def.map;
     const bool own_waves = (model & model_own_waves) != 0, spread = (model & model_displacement) != 0;
     body.streams.rotation = body.rotation;
+    body.streams.grouped = false;
     body.skipped = {};
+    body.detail = {};
     SurfaceView own;
     if (own_waves && body.footprint && body.footprint->active()) {
         own.field = &body.footprint->own;
         own.origin = body.footprint->body_in_window();
         own.cells_per_metre = surface.cells_per_metre;
+    }
+
+    LookupMotion motion = motion_of(body, fluid, dt, model, skip);
+    if ((body.def.error_budget > 0 || body.def.time_budget > 0) && body.wet_sources > 0 && surface.still &&
+        !own.field && !(body.footprint && body.pushes)) {
+        if (const Level* level = choose_level(body, motion)) return look_up_groups(body, *level, motion);
     }
 
     const std::size_t count = body.sources.size();
@@ -136,7 +145,7 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
         begin_block(body, first, block);
         if (surface.field || own.field) water = std::max(water, sample_water(body, surface, own, first, block));
     }
-    LookupMotion motion = motion_of(body, fluid, dt, model, skip);
+    body.map_time_owed = 0;
     if (skip & skip_friction && !motion.spinning)
         motion.skip_friction =
             map.tables.friction_sum * motion.friction <=
@@ -165,7 +174,7 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
     if (motion.skip_steady || !map.tables.any_swing)
         for (std::size_t l = 0; l < count; ++l)
             body.skipped.steady += map.tables.steady[l] && body.sources[l].wet_ratio > 0;
-    if (body.footprint) push_up(body, surface, spread);
+    if (body.footprint && body.pushes) push_up(body, surface, spread);
     body.forces.pressure = wrench_of(body, sum, 0);
     body.forces.friction = wrench_of(body, sum, 4);
     body.relative_speed = area_sum > 0 ? speed_sum / area_sum : 0.0f;
@@ -176,9 +185,20 @@ SourceReading read_source(const Body& body, std::uint32_t l) {
     SourceReading out;
     out.position = r.to_world(body.def.map->sources[l].position * body.def.scale);
     if (!(body.sources[l].wet_ratio > 0)) return out;
-    out.relative_velocity = r.to_world(body.streams.stream(l));
-    out.pressure = r.to_world(body.streams.pressure(l));
-    out.friction = r.to_world(body.streams.friction(l));
+    const std::size_t in_block = l % lookup_block, first = l - in_block;
+    const LookupBlock* block = &body.streams.block[l / lookup_block];
+    LookupBlock looked_up{};
+    if (body.streams.grouped) {  // the motion of that tick once more, for this source
+        LookupSum sum{};
+        looked_up.count = static_cast<std::uint32_t>(in_block + 1);
+        looked_up.wet[in_block] = body.sources[l].wet_ratio;
+        kernels().look_up_block(lookup_table(*body.def.map), body.streams.motion, looked_up, first, sum);
+        block = &looked_up;
+    }
+    const float* f = block->force[in_block].v;
+    out.relative_velocity = r.to_world({block->x[in_block], block->y[in_block], block->z[in_block]});
+    out.pressure = r.to_world({f[0], f[1], f[2]});
+    out.friction = r.to_world({f[4], f[5], f[6]});
     return out;
 }
 

@@ -16,21 +16,17 @@ struct SourceStreams {
 
     std::pmr::vector<LookupBlock> block;
     Rotation<float> rotation;  ///< of the body in that tick
+    bool grouped = false;      ///< the tick looked up groups; the blocks are older
+    LookupMotion motion{};     ///< of that tick
 
-    Vec3f stream(std::size_t l) const {
-        const LookupBlock& b = block[l / lookup_block];
-        return {b.x[l % lookup_block], b.y[l % lookup_block], b.z[l % lookup_block]};
-    }
-    const ForceRow& force(std::size_t l) const { return block[l / lookup_block].force[l % lookup_block]; }
     Vec3f pressure(std::size_t l) const {
-        const float* v = force(l).v;
+        const float* v = block[l / lookup_block].force[l % lookup_block].v;
         return {v[0], v[1], v[2]};
     }
-    Vec3f friction(std::size_t l) const {
-        const float* v = force(l).v;
-        return {v[4], v[5], v[6]};
+    void forget() {
+        grouped = false;
+        block.assign(block.size(), LookupBlock{});
     }
-    void forget() { block.assign(block.size(), LookupBlock{}); }
 };
 
 }  // namespace frm

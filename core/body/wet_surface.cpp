@@ -59,6 +59,7 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     }
     body.water_finite = std::isfinite(sum_of_depths);
     const bool all_wet = surface.everywhere || surface.level + least > 0, any_wet = all_wet || surface.level + most > 0;
+    body.all_wet = all_wet;
     if (!all_wet)
         for (float& d : body.depth) d += surface.level;
 

@@ -40,7 +40,8 @@ struct LookupTable {
     const float *y = nullptr, *z = nullptr;
     const FaceCorners *corners = nullptr, *swing_corners = nullptr;  ///< [face]
     const ForceRow* mean = nullptr;                                  ///< [speed][direction][source], N
-    const ForceRow* torque = nullptr;          ///< as mean, N m about the source: of a group of sources; else null
+    /// Of groups of sources: from a row of `mean` to its torque about the group's centre, N m; from one of `spin`. Else 0.
+    std::ptrdiff_t torque = 0, spin_torque = 0;
     const SwingRow* swing = nullptr;           ///< [direction][source][samples + 1]: the first sample again at the end
     const float* step = nullptr;               ///< [direction], N: one unit of `swing`
     const FaceLevel* level = nullptr;          ///< [face]
@@ -81,12 +82,14 @@ struct alignas(64) LookupBlock {
     // Out.
     float speed[lookup_block];  ///< of the stream, m/s
     ForceRow force[lookup_block];
+    // In.
+    std::uint32_t count = 0;  ///< of sources, 16 at most
 };
 
 /// Sums over the sources: of the force, and of each component of the position (as in the map) times the force.
 struct LookupSum {
     ForceRow force, x, y, z;
-    ForceRow torque;  ///< of LookupTable::torque
+    ForceRow torque;  ///< of the groups, each about its centre
 };
 
 }  // namespace frm

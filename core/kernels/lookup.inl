@@ -155,7 +155,7 @@ FRM_INLINE void find_rows(const LookupTable& map, const LookupMotion& m, const L
     const std::size_t cells = sources * static_cast<std::size_t>(4 * map.frequency * map.frequency + 2);
     const ForceRow* mean = map.mean + first + (m.by_speed ? 0 : map.base * cells);
     const SwingRow* swing = map.swing + first * series;
-    for (int s = 0; s < block; ++s) {
+    for (int s = 0; s < static_cast<int>(io.count); ++s) {
         const auto source = static_cast<std::size_t>(s);
         if (!(io.wet[s] > 0.0f)) continue;
         const FaceCorners& corner = map.corners[b.mean.face[s]];
@@ -206,12 +206,21 @@ FRM_INLINE void add_swing(const Block& b, int s, Row& out) {
 }
 
 template <typename Row>
+FRM_INLINE void add_spin(const LookupTable& map, const LookupMotion& m, float wet, std::ptrdiff_t row, Row& out) {
+    Row rows[3], factor;
+    const auto pitch = static_cast<std::ptrdiff_t>(map.sources);
+    for (int k = 0; k < 3; ++k) read(rows[k], map.spin[static_cast<std::ptrdiff_t>(m.spin_axis[k]) * pitch + row].v);
+    fill(factor, m.spin_pressure * wet, m.spin_friction * wet);
+    out += ((rows[0] * m.spin_weight[0] + rows[1] * m.spin_weight[1]) + rows[2] * m.spin_weight[2]) * factor;
+}
+
+template <typename Row>
 FRM_INLINE void add_forces(const LookupTable& map, const LookupMotion& m, const Block& b, LookupBlock& io,
                            std::size_t first, LookupSum& total) {
     Row force, mx, my, mz, torque;
     read(force, total.force.v), read(mx, total.x.v), read(my, total.y.v), read(mz, total.z.v);
     read(torque, total.torque.v);
-    for (int s = 0; s < block; ++s) {
+    for (int s = 0; s < static_cast<int>(io.count); ++s) {
         if (!(io.wet[s] > 0.0f)) continue;
         const std::size_t source = first + static_cast<std::size_t>(s);
         Row row, factor;
@@ -219,22 +228,18 @@ FRM_INLINE void add_forces(const LookupTable& map, const LookupMotion& m, const 
         if (m.swinging && !(m.skip_steady && map.steady[source])) add_swing(b, s, row);
         fill(factor, b.pressure[s], b.friction[s]);
         row = row * factor;
-        if (m.spinning) {
-            Row a[3], spin;
-            for (int k = 0; k < 3; ++k) read(a[k], map.spin[m.spin_axis[k] * std::size_t{map.sources} + source].v);
-            fill(spin, m.spin_pressure * io.wet[s], m.spin_friction * io.wet[s]);
-            row += ((a[0] * m.spin_weight[0] + a[1] * m.spin_weight[1]) + a[2] * m.spin_weight[2]) * spin;
-        }
+        if (m.spinning) add_spin(map, m, io.wet[s], static_cast<std::ptrdiff_t>(source), row);
         write(io.force[s].v, row);
         force += row;
         mx += row * map.x[source];
         my += row * map.y[source];
         mz += row * map.z[source];
-        if (map.torque) {
-            Row turning;
-            read_means(map, m, b, s, map.torque - map.mean, turning);
-            torque += turning * factor;
-        }
+        if (map.torque == 0) continue;
+        Row turning;
+        read_means(map, m, b, s, map.torque, turning);
+        turning = turning * factor;
+        if (m.spinning) add_spin(map, m, io.wet[s], static_cast<std::ptrdiff_t>(source) + map.spin_torque, turning);
+        torque += turning;
     }
     write(total.force.v, force), write(total.x.v, mx), write(total.y.v, my), write(total.z.v, mz);
     write(total.torque.v, torque);

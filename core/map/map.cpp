@@ -25,6 +25,7 @@ Map::Map(std::pmr::memory_resource* memory)
       log_speed(memory),
       levels(memory),
       tables(memory),
+      detail(memory),
       file(memory) {}
 
 namespace {
@@ -184,6 +185,7 @@ void Map::complete() {
         for (const float u : speeds) log_speed.push_back(logarithm(u));
     measure_levels(*this);
     tables.fill(*this);
+    detail.fill(*this);
     shape = shape_of(*this);
     require(shape.volume > 0, "the surface encloses no volume");
 }

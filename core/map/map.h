@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/map/directions.h"
+#include "core/map/levels.h"
 #include "core/map/tables.h"
 #include "core/math/vec.h"
 
@@ -101,6 +102,7 @@ struct Map {
     std::pmr::vector<float> log_speed;      ///< [speed]; empty for one speed
     std::pmr::vector<FaceLevel> levels;     ///< [face of fluctuation_directions]
     MapTables tables;                       ///< all of it as a tick reads it
+    MapLevels detail;                       ///< groups of sources, for a tick that may be less exact
 
     std::uint32_t format_version = 0;     ///< of the file it was read from
     std::pmr::vector<std::uint8_t> file;  ///< the bytes it was read from; empty for a map that was made in memory

@@ -104,10 +104,12 @@ void MapTables::fill(const Map& map) {
 
     std::pmr::vector<Swing> most(count, mean.get_allocator());
     double friction = 0;
+    Swing all;
     any_swing = false;
     for (std::size_t l = 0; l < count; ++l) {
         most[l] = largest_swing(map, l);
         friction += largest_friction(map, l) + most[l].friction;
+        all.pressure += most[l].pressure, all.friction += most[l].friction;
         any_swing |= most[l].pressure > 0 || most[l].friction > 0;
     }
     Swing peak = largest_mean(map, 0);
@@ -117,6 +119,8 @@ void MapTables::fill(const Map& map) {
     }
     peak_pressure = static_cast<float>(peak.pressure);
     friction_sum = static_cast<float>(friction);
+    swing_pressure = static_cast<float>(all.pressure);
+    swing_friction = static_cast<float>(all.friction);
 
     // Pressure and friction each within their own budget, because they go with the speed differently.
     const auto share = [&](const Swing& s) {

@@ -29,9 +29,10 @@ struct MapTables {
     std::pmr::vector<std::uint8_t> steady;
     std::uint32_t steady_sources = 0;
     float peak_pressure = 0;  ///< N, of the whole body's mean at the base speed; the smallest of the speeds'
-    float friction_sum = 0;   ///< N, the largest that frictions can add up to at the base speed
-    bool any_swing = false;   ///< the map fluctuates at all
-    float reach = 0;          ///< m, of the source furthest from the origin
+    float swing_pressure = 0, swing_friction = 0;  ///< N, the largest that fluctuations can add up to, by part
+    float friction_sum = 0;                        ///< N, the largest that frictions can add up to at the base speed
+    bool any_swing = false;                        ///< the map fluctuates at all
+    float reach = 0;                               ///< m, of the source furthest from the origin
 
     /// From the map's own tables, which must be complete.
     void fill(const Map& map);

@@ -10,6 +10,7 @@ struct SurfaceView {
     bool everywhere = false;       ///< fluid without a surface: all is wet and nothing is buoyant
     float level = 0;               ///< of the calm surface above the body's origin, m
     const Field* field = nullptr;  ///< null: flat
+    bool still = true;             ///< the water near the body is at rest
     GridOrigin origin;             ///< the body's origin in the field
     float cells_per_metre = 0;
 

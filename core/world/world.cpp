@@ -19,6 +19,7 @@ void forget_forces(Body& body) {
     body.displaced_volume = body.wet_area = body.relative_speed = 0;
     for (SourceState& source : body.sources) source = {};
     body.streams.forget();
+    body.map_time_owed = 0;
 }
 
 }  // namespace
@@ -93,6 +94,7 @@ SurfaceView World::view_from(const Body& body) const {
     view.level = static_cast<float>(def_.level - body.def.pose.position.z);
     if (water_) {
         view.field = &water_->field;
+        view.still = false;
         view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
         view.cells_per_metre = 1.0f / water_->def().field.cell;
     }
