@@ -131,13 +131,14 @@ frm_status FRM_CALL frm_body_get_sources(frm_body body, frm_source_state* source
             throw Error(FRM_ERROR_CAPACITY, "the buffer takes %u sources; the body has %zu", capacity,
                         b.sources.size());
         for (std::size_t l = 0; l < b.sources.size(); ++l) {
-            const SourceState& s = b.sources[l];
+            const SourceState& state = b.sources[l];
+            const SourceReading s = read_source(b, static_cast<std::uint32_t>(l));
             frm_source_state out{};
             out.position = c.axes().position_out(b.def.pose.position + Vec3d(s.position));
             out.force = c.axes().vector_out(s.pressure + s.friction);
             out.relative_velocity = c.axes().vector_out(s.relative_velocity);
-            out.wet_ratio = s.wet_ratio;
-            out.map_time = s.map_time;
+            out.wet_ratio = state.wet_ratio;
+            out.map_time = state.map_time + b.map_time_owed;
             sources[l] = out;
         }
     });

@@ -3,7 +3,11 @@
 namespace frm {
 
 Body::Body(const BodyDef& d, std::uint32_t number, std::pmr::memory_resource* memory)
-    : def(d), id(number), rotation(d.pose.rotation), sources(d.map->sources.size(), SourceState(), memory) {}
+    : def(d),
+      id(number),
+      rotation(d.pose.rotation),
+      sources(d.map->sources.size(), SourceState(), memory),
+      streams(d.map->sources.size(), memory) {}
 
 Vec3f Body::centre() const { return def.map->clusters.centre * def.scale; }
 

@@ -7,10 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/body/source_streams.h"
 #include "core/body/volume_elements.h"
 #include "core/map/map.h"
 #include "core/math/quat.h"
 #include "core/model.h"
+#include "core/skip.h"
 #include "core/water/footprint.h"
 
 namespace frm {
@@ -44,6 +46,16 @@ struct BodyDef {
     Twist twist;
 };
 
+/// How exact, or how fast, a body's resistance is to be.
+struct Budget {
+    /// N: the force may be off by so much (its torque by that times the distance of the furthest source). Where that
+    /// suffices, groups of sources are looked up as one. 0: every source by itself.
+    float error = 0;
+    /// us: what the lookups may cost, counted by a fixed price each and not by the clock, which would not give the same
+    /// bits twice. 0: no limit. Goes before `error`.
+    float time = 0;
+};
+
 /// The fluid that a body is in.
 struct Fluid {
     float gravity = 9.80665f;
@@ -51,11 +63,15 @@ struct Fluid {
     float viscosity = 1e-6f;  ///< kinematic
 };
 
-/// What is remembered of one haptic source between ticks, and of the last one for those who look.
+/// What is remembered of one haptic source between ticks.
 struct SourceState {
-    float map_time = 0;        ///< s of Eq. 6
-    float wet_area = 0;        ///< m^2
-    float wet_ratio = 0;       ///< alpha of Eq. 6
+    float map_time = 0;   ///< s of Eq. 6
+    float wet_area = 0;   ///< m^2
+    float wet_ratio = 0;  ///< alpha of Eq. 6
+};
+
+/// What the last tick found at a source.
+struct SourceReading {
     Vec3f position;            ///< local: world axes, origin at the body
     Vec3f relative_velocity;   ///< of the water against the source, world axes
     Vec3f pressure, friction;  ///< N, world axes
@@ -70,12 +86,26 @@ struct Body {
     std::uint32_t id;  ///< counts the bodies of a world in the order of creation
     Rotation<float> rotation;
     std::pmr::vector<SourceState> sources;
+    SourceStreams streams;                   ///< of the last tick
     std::optional<Footprint> footprint;      ///< while the world has water
     std::optional<VolumeElements> elements;  ///< while it has a footprint: what is laid into it
 
     Forces forces;
     float displaced_volume = 0, wet_area = 0, relative_speed = 0;
     std::uint32_t wet_sources = 0, clipped_triangles = 0;
+    /// Sources of the last tick whose friction or fluctuation was left out (core/skip.h).
+    struct {
+        std::uint32_t friction = 0, steady = 0;
+    } skipped;
+    /// The level of detail of the last tick.
+    struct {
+        std::uint32_t groups = 0;  ///< 0: every source by itself
+        float error = 0;           ///< N, the bound on what that costs
+        bool over_budget = false;  ///< the time did not suffice for the error
+    } detail;
+    float map_time_owed = 0;   ///< s, to all wet sources, of ticks that looked up groups
+    Budget budget;             ///< of this tick
+    bool pushes = true;        ///< it is near enough to the surface to push it
     bool water_finite = true;  ///< the surface around it is a finite number
     float wet_height = 0;  ///< of the wet surface's centroid above the origin, m, as if the surface over it were calm
     Wetness wetness = Wetness::unknown;  ///< what the sources and the buoyancy were last set to
@@ -83,6 +113,7 @@ struct Body {
     Vec3d laid_at;  ///< the pose that the footprint's thickness belongs to
     Rotation<float> laid_rotation;
 
+    bool all_wet() const { return wetness == Wetness::whole; }
     /// Centre and radius of a sphere around the surface, body frame, scaled.
     Vec3f centre() const;
     float radius() const;
@@ -101,8 +132,12 @@ void lay_displacement(Body& body, float level, bool spread, bool keep_still = tr
 /// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). `model` says by
 /// its bits: own_waves, that the water's velocity is taken without what the body itself made; displacement, that the
 /// pressure reaches the surface the wider the deeper its source is; fluctuation, speeds and spin, what of the map is
-/// used beyond the paper's.
-void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, std::uint32_t model);
+/// used beyond the paper's. `skip`: what is left out where it does not count (core/skip.h).
+void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& fluid, float dt, std::uint32_t model,
+                        std::uint32_t skip);
+
+/// Source `l` as the last tick found it; nothing but its position where it was dry.
+SourceReading read_source(const Body& body, std::uint32_t l);
 
 /// Weight, and the sum of the parts (Eq. 4).
 void sum_forces(Body& body, const Fluid& fluid);

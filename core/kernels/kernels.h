@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/kernels/lookup.h"
 #include "core/kernels/wet_kernels.h"
 
 namespace frm {
@@ -68,6 +69,10 @@ struct Kernels {
                            float uz, float* laid, float* left);
     void (*refine_row)(float* fine, const float* near, const float* far, std::ptrdiff_t count);
     void (*add_change_row)(float* h, const float* now, const float* before, std::ptrdiff_t count);
+    /// Eq. 6 for sources `first` to first + 15, and their forces added to `total`. Where `skip_friction` is set, the
+    /// friction half of the forces and sums is left as it was.
+    void (*look_up_block)(const LookupTable& map, const LookupMotion& motion, LookupBlock& block, std::size_t first,
+                          LookupSum& total);
 };
 
 /// The best for this machine; the same on every call.

@@ -3,7 +3,13 @@
 // functions: the linker would keep one copy of those, perhaps one that this machine cannot run.
 #include <math.h>
 
+#include <cstdint>
+#include <cstring>
+
 #include "core/kernels/kernels.h"
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
 
 // Before a loop over lanes: no lane writes what another one reads.
 #if defined(__clang__)
@@ -15,8 +21,12 @@
 #endif
 
 namespace frm::FRM_KERNEL_SET {
+#include "core/math/logarithm.h"  // a copy of its own, as frm::<set>::frm::logarithm
+
+#include "core/kernels/eight.inl"
 #include "core/kernels/footprint_rows.inl"
 #include "core/kernels/lanes.inl"
+#include "core/kernels/lookup.inl"
 #include "core/kernels/wave_rows.inl"
 #include "core/kernels/wet_surface.inl"
 
@@ -42,5 +52,6 @@ const Kernels kernels{
     slice_elements,
     refine_row,
     add_change_row,
+    look_up_block,
 };
 }  // namespace frm::FRM_KERNEL_SET

@@ -81,6 +81,21 @@ std::array<std::uint32_t, 3> DirectionSet::corners(std::uint32_t face) const {
     return {at(i + 1, j, k), at(i, j + 1, k), at(i, j, k + 1)};
 }
 
+FacePlace DirectionSet::locate(const Vec3f& d) const {
+    const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
+    const float n = static_cast<float>(n_), last = n - 1, sum = (ax + ay) + az, size = sum > 0 ? sum : 1.0f;
+    const float p = ax / size * n, q = ay / size * n;
+    const auto i = static_cast<std::int32_t>(p < last ? p : last);
+    const float room = last - static_cast<float>(i);
+    const auto j = static_cast<std::int32_t>(q < room ? q : room);
+    const float fp = p - static_cast<float>(i), fq = q - static_cast<float>(j), both = fp + fq;
+    const bool inner = static_cast<float>(j) < room && both > 1;
+    const float rest = inner ? both - 1 : 1 - both;
+    const std::int32_t octant = (d.x < 0 ? 4 : 0) + (d.y < 0 ? 2 : 0) + (d.z < 0 ? 1 : 0);
+    return {static_cast<std::uint32_t>(octant * n_ * n_ + i * (2 * n_ - i) + 2 * j + (inner ? 1 : 0)),
+            {inner ? 1 - fp : fp, inner ? 1 - fq : fq, rest > 0 ? rest : 0.0f}};
+}
+
 DirectionWeights DirectionSet::interpolate(const Vec3f& d) const {
     const float n = static_cast<float>(n_);
     const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);

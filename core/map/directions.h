@@ -17,6 +17,12 @@ struct DirectionWeights {
     std::uint32_t face;
 };
 
+/// A direction by the face that it goes through and the weights of that face's corners.
+struct FacePlace {
+    std::uint32_t face;
+    float weight[3];
+};
+
 struct Neighbours {
     std::uint32_t count = 0;
     std::uint32_t index[6];
@@ -36,6 +42,9 @@ public:
     /// Barycentric weights in the octahedron's face, exact at the directions, continuous everywhere. `d` must not be
     /// zero; its length does not matter.
     DirectionWeights interpolate(const Vec3f& d) const;
+    /// The same without the corners' numbers, for those who have a table of them. Zero and what is not finite give a face
+    /// that there is.
+    FacePlace locate(const Vec3f& d) const;
 
     /// Those of a direction's neighbours on the lattice that have a smaller index: points that differ from it by one in
     /// exactly two coordinates.

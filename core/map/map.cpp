@@ -24,6 +24,8 @@ Map::Map(std::pmr::memory_resource* memory)
       clusters(memory),
       log_speed(memory),
       levels(memory),
+      tables(memory),
+      detail(memory),
       file(memory) {}
 
 namespace {
@@ -181,6 +183,8 @@ void Map::complete() {
     if (speeds.size() > 1)
         for (const float u : speeds) log_speed.push_back(logarithm(u));
     measure_levels(*this);
+    tables.fill(*this);
+    detail.fill(*this);
     shape = shape_of(*this);
     require(shape.volume > 0, "the surface encloses no volume");
     clusters.build(*this);

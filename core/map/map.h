@@ -11,6 +11,8 @@
 
 #include "core/map/clusters.h"
 #include "core/map/directions.h"
+#include "core/map/levels.h"
+#include "core/map/tables.h"
 #include "core/math/vec.h"
 
 namespace frm {
@@ -52,13 +54,6 @@ struct SpinTable {
     float rate = 0;                       ///< w0, rad/s; 0: there is no table
     Vec3f centre;                         ///< m, body frame
     std::pmr::vector<SourceForce> force;  ///< [direction][source]
-};
-
-/// How much of its strength a blend of the three fluctuations of a face keeps: of the force on the whole object, in any
-/// common unit.
-struct FaceLevel {
-    float rms[3];      ///< of each corner's
-    float product[3];  ///< mean product of corners 1 and 2, 2 and 0, 0 and 1
 };
 
 /// Geometry of the whole surface, worked out from the triangles when a map is complete.
@@ -109,6 +104,8 @@ struct Map {
     std::uint32_t base = 0;                 ///< which of `speeds` is the base speed
     std::pmr::vector<float> log_speed;      ///< [speed]; empty for one speed
     std::pmr::vector<FaceLevel> levels;     ///< [face of fluctuation_directions]
+    MapTables tables;                       ///< all of it as a tick reads it
+    MapLevels detail;                       ///< groups of sources, for a tick that may be less exact
 
     std::uint32_t format_version = 0;     ///< of the file it was read from
     std::pmr::vector<std::uint8_t> file;  ///< the bytes it was read from; empty for a map that was made in memory

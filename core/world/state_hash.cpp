@@ -30,6 +30,7 @@ void hash_body(StateHash& hash, const Body& body) {
     hash.value(body.def.twist);
     hash.value(body.forces);
     for (const SourceState& source : body.sources) hash.value(source.map_time);
+    if (body.map_time_owed > 0) hash.value(body.map_time_owed);
     if (body.footprint) body.footprint->hash(hash);
 }
 

@@ -19,6 +19,8 @@ void forget_forces(Body& body) {
     body.displaced_volume = body.wet_area = body.relative_speed = 0;
     for (SourceState& source : body.sources) source = {};
     body.wetness = Wetness::unknown;
+    body.streams.forget();
+    body.map_time_owed = 0;
 }
 
 }  // namespace
@@ -101,6 +103,7 @@ SurfaceView World::view_from(const Body& body) const {
     if (water_) {
         view.highest = 3e38f;
         view.field = &water_->field;
+        view.still = false;
         view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
         view.cells_per_metre = 1.0f / water_->def().field.cell;
     }
@@ -122,6 +125,9 @@ bool World::tick(float dt) {
     }
 
     bool diverged = false;
+    std::uint32_t wet = 0;
+    for (const auto& body : bodies_) wet += body->wet_sources > 0;
+    const float time_each = def_.time_budget / static_cast<float>(std::max(1u, wet));  // by who was wet in the last tick
     const bool spread = (def_.model & model_displacement) != 0;
     for (const auto& body : bodies_) {
         const SurfaceView view = view_from(*body);
@@ -133,7 +139,8 @@ bool World::tick(float dt) {
         }
         measure_wet_surface(*body, view, def_.fluid);
         if (body->footprint) lay_displacement(*body, view.level, spread, (def_.skip & skip_still_bodies) != 0);
-        look_up_resistance(*body, view, def_.fluid, dt, def_.model);
+        body->budget = {def_.error_budget, time_each};
+        look_up_resistance(*body, view, def_.fluid, dt, def_.model, def_.skip);
         sum_forces(*body, def_.fluid);
         if (!body->water_finite || !finite(body->forces)) {
             forget_forces(*body);

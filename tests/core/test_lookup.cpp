@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <random>
 
+#include "core/kernels/kernels.h"
 #include "core/map/lookup.h"
 #include "tests/support/catch.h"
 #include "tests/support/worlds.h"
@@ -207,4 +210,115 @@ TEST_CASE("between speeds the mean is linear in the logarithm, outside the neare
     const Vec3f a = mean({0, 0, 0}), b = mean({1, 1, 0}), between = mean({0, 1, 0.25f});
     CHECK(length(between - (a * 0.75f + b * 0.25f)) < 1e-6f * length(a));
     CHECK(length(a - b * 2.0f) < 0.02f * length(a));  // the formula: twice as much at the lowest speed
+}
+
+namespace {
+
+LookupMotion random_motion(const Map& map, std::mt19937& random) {
+    std::uniform_real_distribution<float> number(-1, 1);
+    LookupMotion m{};
+    for (int k = 0; k < 3; ++k) m.velocity[k] = number(random), m.rotation[k] = number(random);
+    m.per_base_speed = 1 / map.facts.base_speed;
+    m.time = 0.01f;
+    m.pressure = 0.9f;
+    m.friction = 1.1f;
+    m.reynolds_speed = 1.3f;
+    m.by_speed = map.speeds.size() > 1 && number(random) > 0;
+    m.keep_level = number(random) > 0;
+    m.swinging = number(random) > -0.5f;
+    m.skip_steady = number(random) > 0;
+    m.skip_friction = number(random) > 0.5f;
+    m.spinning = map.spin.rate > 0 && number(random) > 0;
+    for (std::uint32_t k = 0; k < 3; ++k) m.spin_axis[k] = 2 * k, m.spin_weight[k] = 1.0f / 3;
+    m.spin_pressure = m.spin_friction = 0.7f;
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("every instruction set looks up the same bits", "[lookup]") {
+    const Kernels* sets[max_kernel_sets];
+    const std::size_t count = every_kernel_set(sets);
+    const bake::Surface box = test::fine_box({0.2, 0.1, 0.3}, 0.08);
+    const Map maps[] = {bake::formula_map(box, 23, 4, 20), test::full_map(box, 16, 8)};
+    std::mt19937 random(31);
+    std::uniform_real_distribution<float> number(-1, 1);
+    for (const Map& map : maps) {
+        const LookupTable table = lookup_table(map);
+        for (int i = 0; i < 3000; ++i) {
+            const LookupMotion motion = random_motion(map, random);
+            const std::size_t first = map.source_count() > lookup_block && i % 2 ? lookup_block : 0;
+            LookupBlock in{};
+            in.count = std::min(static_cast<std::uint32_t>(lookup_block), map.source_count() - static_cast<std::uint32_t>(first));
+            for (std::size_t s = 0; s < lookup_block && first + s < map.source_count(); ++s) {
+                in.wet[s] = number(random);
+                in.x[s] = number(random), in.y[s] = number(random);
+                in.time[s] = map.facts.period * 0.999f * std::fabs(number(random));
+            }
+            LookupBlock blocks[max_kernel_sets];
+            LookupSum sums[max_kernel_sets] = {};
+            for (std::size_t k = 0; k < count; ++k) {
+                blocks[k] = in;
+                sets[k]->look_up_block(table, motion, blocks[k], first, sums[k]);
+                INFO(sets[k]->instructions);
+                REQUIRE(std::memcmp(&blocks[k], &blocks[0], offsetof(LookupBlock, count)) == 0);
+                REQUIRE(std::memcmp(&sums[k], &sums[0], sizeof sums[0]) == 0);
+            }
+        }
+    }
+}
+
+TEST_CASE("numbers that are not finite stay within the tables", "[lookup]") {
+    const Map map = test::full_map(test::fine_box({0.2, 0.1, 0.3}, 0.08), 16, 8);
+    const LookupTable table = lookup_table(map);
+    std::mt19937 random(32);
+    const float odd[] = {NAN, INFINITY, -INFINITY, 3e38f, -3e38f, 1e-45f, -1e-45f, 0, -0.0f, 1e30f};
+    std::uniform_int_distribution<int> any(0, 9);
+    const Kernels* sets[max_kernel_sets];
+    const std::size_t count = every_kernel_set(sets);
+    for (int i = 0; i < 3000; ++i) {
+        LookupMotion motion = random_motion(map, random);
+        motion.by_speed = true;
+        for (int k = 0; k < 3; ++k) motion.velocity[k] = odd[any(random)], motion.rotation[k] = odd[any(random)];
+        for (std::size_t k = 0; k < count; ++k) {
+            LookupBlock block{};
+            LookupSum sum{};
+            block.count = lookup_block;
+            for (std::size_t s = 0; s < lookup_block; ++s) block.wet[s] = 1, block.x[s] = odd[any(random)];
+            sets[k]->look_up_block(table, motion, block, 0, sum);  // the sanitizers see what is read
+            for (std::size_t s = 0; s < lookup_block; ++s)
+                REQUIRE((block.time[s] >= 0 && block.time[s] < map.facts.period));
+        }
+    }
+}
+
+TEST_CASE("a direction's face has the corners and weights that interpolation finds", "[lookup]") {
+    std::mt19937 random(33);
+    std::normal_distribution<float> normal;
+    for (const std::uint32_t n : {1u, 2u, 3u, 5u, 64u}) {
+        const DirectionSet set(n);
+        for (int i = 0; i < 5000; ++i) {
+            Vec3f d(normal(random), normal(random), normal(random));
+            if (i % 7 == 0) d[i % 3] = 0;
+            if (i < 200) d = Vec3f(set.direction(static_cast<std::uint32_t>(i) % set.count()));
+            const FacePlace place = set.locate(d);
+            REQUIRE(place.face < set.faces());
+            const auto corner = set.corners(place.face);
+            const DirectionWeights e = set.interpolate(d);
+            // The same point of the octahedron: corners may differ where weights vanish.
+            const auto point = [&](std::uint32_t k) {
+                const Vec3d v = set.direction(k);
+                return v / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+            };
+            Vec3d a, b;
+            for (std::size_t k = 0; k < 3; ++k) {
+                REQUIRE(place.weight[k] >= 0);
+                a += point(corner[k]) * static_cast<double>(place.weight[k]);
+                b += point(e.index[k]) * static_cast<double>(e.weight[k]);
+            }
+            REQUIRE(length(a - b) < 3e-7 + 1e-7 * n);
+        }
+    }
+    for (const float odd : {0.0f, NAN, INFINITY, 1e-45f, 3e38f})
+        for (const std::uint32_t n : {1u, 4u, 64u}) CHECK(DirectionSet(n).locate({odd, odd, -odd}).face < 8 * n * n);
 }

@@ -168,7 +168,7 @@ TEST_CASE("another body's waves are felt in full", "[coupling]") {
             world.set_motion(pusher, {{-1.5, 0, 0.03 * std::sin(phase)}, {}},
                              {{0, 0, static_cast<float>(0.24 * std::cos(phase))}, {}});
             world.tick(0.002f);
-            most = std::fmax(most, length(still.sources[0].relative_velocity));
+            most = std::fmax(most, length(read_source(still, 0).relative_velocity));
         }
         return most;
     };

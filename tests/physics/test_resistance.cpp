@@ -1,4 +1,5 @@
 // Eq. 6: its three scalings, torque, and the similarity laws.
+#include <algorithm>
 #include <cmath>
 
 #include "core/map/lookup.h"
@@ -97,7 +98,7 @@ TEST_CASE("torque is about the body's origin", "[resistance]") {
                                           static_cast<double>(q.w)});
     Vec3d torque, force;
     for (std::size_t l = 0; l < body.sources.size(); ++l) {
-        const Vec3d f = Vec3d(body.sources[l].pressure);
+        const Vec3d f = Vec3d(read_source(body, static_cast<std::uint32_t>(l)).pressure);
         force += f;
         torque += cross(r.to_world(Vec3d(box_map()->sources[l].position)), f);
     }
@@ -115,7 +116,7 @@ TEST_CASE("a source's velocity is the body's motion at the source", "[resistance
     world.tick(0.002f);
     for (std::size_t l = 0; l < body.sources.size(); ++l) {
         const Vec3f expected = -cross(omega, box_map()->sources[l].position);
-        CHECK(length(body.sources[l].relative_velocity - expected) < 1e-6f);
+        CHECK(length(read_source(body, static_cast<std::uint32_t>(l)).relative_velocity - expected) < 1e-6f);
     }
 }
 
@@ -275,10 +276,46 @@ TEST_CASE("a dry source feels nothing of the spin", "[resistance]") {
     Body& body = world.create_body(body_of(std::make_shared<Map>(map), {0, 0, 0}, {}, {{}, {0, 0, 1}}));
     world.tick(0.01f);
     int dry = 0;
-    for (const SourceState& s : body.sources) {
-        if (s.wet_ratio > 0) continue;
+    for (std::uint32_t l = 0; l < body.sources.size(); ++l) {
+        if (body.sources[l].wet_ratio > 0) continue;
         ++dry;
-        CHECK(s.pressure == Vec3f());
+        CHECK(read_source(body, l).pressure == Vec3f());
     }
     CHECK(dry > 0);
+}
+
+TEST_CASE("a source's pressure lies on the water around it, as wide as its depth asks for", "[resistance]") {
+    const FieldDef water = test::water_of(200, 0.025f, 1).field;
+    Footprint footprint(water, 0.3f, test::memory());
+    const double cell = static_cast<double>(water.cell), widest = static_cast<double>(Pyramid::widest());
+    for (const float depth : {0.0f, 0.02f, 0.05f, 0.07f, 0.13f}) {
+        for (const float shift : {0.1f, 0.45f, 0.95f}) {
+            footprint.begin(100, 100, {100, 100, shift, 0.7f}, nullptr);
+            const float p = 1234, area = 0.004f;
+            footprint.splat_pressure({0.05f, -0.11f, 0}, p, area, depth);
+            footprint.gather_pressure();
+            const double d = static_cast<double>(depth) * 1.47;
+            const double asked = std::sqrt(0.25 * static_cast<double>(area) + d * d) / cell;
+            const double width = std::min(asked, widest);
+            const GridOrigin at = footprint.body_in_window();
+            const double x = at.i + static_cast<double>(at.x) + 0.05 / cell,
+                         y = at.j + static_cast<double>(at.y) - 0.11 / cell;
+            double sum = 0, mean_x = 0, mean_y = 0, square = 0;
+            for (std::int32_t j = 0; j < footprint.size(); ++j) {
+                for (std::int32_t i = 0; i < footprint.size(); ++i) {
+                    const double found = static_cast<double>(footprint.pressure()[j * footprint.size() + i]);
+                    sum += found, mean_x += found * (i + 0.5 - x), mean_y += found * (j + 0.5 - y);
+                    square += found * ((i + 0.5 - x) * (i + 0.5 - x) + (j + 0.5 - y) * (j + 0.5 - y));
+                }
+            }
+            INFO("depth " << depth << " shift " << shift);
+            // Deeper than the widest, the middle goes down with the square of the width.
+            CHECK(sum * cell * cell ==
+                  Approx(static_cast<double>(p * area) * (width / asked) * (width / asked)).epsilon(1e-4));
+            CHECK(std::fabs(mean_x / sum) < 1e-3);
+            CHECK(std::fabs(mean_y / sum) < 1e-3);
+            CHECK(std::sqrt(0.5 * square / sum) == Approx(width).epsilon(0.1));
+            footprint.end();
+        }
+    }
 }
