@@ -8,8 +8,11 @@ namespace {
 
 constexpr std::int32_t longest_side = 128;       ///< of the lattice, in elements
 constexpr std::int32_t most_elements = 1 << 18;  ///< of the lattice, empty ones too
-constexpr std::int32_t rays = 4;                 ///< through an element, along each side of it
-constexpr double ray_offset = 0.50013;           ///< of a ray in its share: off the middle, where edges like to lie
+/// Of the finest elements, in cells of their level. With whole ones, a hull that is towed turned against the grid leaves
+/// ripples of two cells ten times as high behind.
+constexpr double finest_edge = 0.5;
+constexpr std::int32_t rays = 4;        ///< through an element, along each side of it
+constexpr double ray_offset = 0.50013;  ///< of a ray in its share: off the middle, where edges like to lie
 
 /// Volume of a lattice cell, its first and its second moments (about the lattice's own origin).
 struct Moment {
@@ -134,7 +137,7 @@ VolumeElements::VolumeElements(const Map& map, float cell, std::pmr::memory_reso
     const Vec3d low(map.shape.low), size = Vec3d(map.shape.high) - low;
     Lattice lattice{{}, low, {}, std::pmr::vector<Moment>(memory)};
     for (;; ++finest_) {
-        const double edge = static_cast<double>(cell) * (1 << finest_);
+        const double edge = finest_edge * static_cast<double>(cell) * (1 << finest_);
         std::int64_t all = 1;
         bool fits = true;
         for (int k = 0; k < 3; ++k) {
@@ -156,7 +159,8 @@ VolumeElements::VolumeElements(const Map& map, float cell, std::pmr::memory_reso
     const Vec3d centre(map.clusters.centre);
     const double least = 1e-9 * map.shape.volume;
     for (int level = finest_; level < Pyramid::levels; ++level) {
-        if (level > finest_) {
+        // The first coarser level has whole cells: four of the finest edges.
+        for (int times = level == finest_ ? 0 : level == finest_ + 1 ? 2 : 1; times > 0; --times) {
             Lattice coarse{{(lattice.n[0] + 1) / 2, (lattice.n[1] + 1) / 2, (lattice.n[2] + 1) / 2},
                            low,
                            lattice.edge * 2.0,

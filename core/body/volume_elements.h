@@ -1,4 +1,4 @@
-// The volume of a body in elements of about one cell of the water, and in coarser ones: what it lays on the water. Made
+// The volume of a body in elements of half a cell of the water, and in coarser ones: what it lays on the water. Made
 // when a body meets its water, from rays through the body's lattice.
 #pragma once
 
@@ -24,7 +24,7 @@ public:
     };
     using Blocks = std::pmr::vector<Block>;
 
-    /// Elements of 2^level cells at most along each axis; empty below finest().
+    /// Elements of 2^level cells at most along each axis, at finest() of half that; empty below it.
     const Blocks& at(int level) const { return level_[static_cast<std::size_t>(level)]; }
     int finest() const { return finest_; }
 
