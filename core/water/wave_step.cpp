@@ -142,7 +142,7 @@ void WaveStep::rows(std::int32_t first, std::int32_t end, const Own& own) {
             continue;
         }
         const std::int32_t like_begin = std::max({block->r0, width, own.damp_begin}) + behind;
-        const std::int32_t like_end = std::min({end, def.ny - width, std::min(block->r1, own.faces_end) - lead()});
+        const std::int32_t like_end = std::min({end, def.ny - width, def.ny - lag() + 1, std::min(block->r1, own.faces_end) - lead()});
         if (push_count_ > 0 || r < like_begin || r >= like_end) {
             turn(r++, own);
             continue;
