@@ -90,7 +90,7 @@ private:
     void damp(float dt, float speed) {
         const std::int32_t nx = def_.nx, ny = def_.ny;
         const auto width = static_cast<float>(def_.border_cells);
-        const float rate = 7.5f * speed / (width * def_.cell);
+        const float rate = speed / (width * def_.cell);
         const auto keep = [&](std::int32_t k, float offset) {
             const float x = 1.0f - (static_cast<float>(k) + offset) / width;
             return x > 0 ? 1.0f / (1.0f + dt * rate * x * x) : 1.0f;
@@ -165,6 +165,7 @@ TEST_CASE("steps are Eqs. 7 and 8 to the bit, at any size, border and order", "[
                     def_of(nx, ny, layer < 0 ? Border::reflecting : Border::absorbing, std::max(layer, 0), order);
                 INFO(nx << " x " << ny << ", layer " << layer << ", order " << order);
                 Field field(def, test::memory());
+                field.go_together_from(0);
                 Plain plain(def);
                 const std::vector<float> h = rough(field.cells(), 3, 0.1f), p = rough(20 * 12, 5, 40);
                 field.set_heights(h.data());
@@ -231,6 +232,7 @@ TEST_CASE("steps that go through the rows together give the bits of one after th
         for (const Border border : {Border::absorbing, Border::reflecting}) {
             const FieldDef def = def_of(150, 130, border, 10, order);
             Field together(def, test::memory()), apart(def, test::memory());
+            together.go_together_from(0);
             const std::vector<float> h = hill(150, 60, 50, 12, 0.05f), p = rough(40 * 40, 9, 30);
             const auto heights = std::vector<float>(h.begin(), h.begin() + 150 * 130);
             together.set_heights(heights.data());
