@@ -410,7 +410,7 @@ typedef struct frm_water_def {
     uint32_t ny;          /* cells, 8 to 8192; default 200 */
     uint32_t border;      /* frm_border; default FRM_BORDER_ABSORBING */
     uint32_t border_cells; /* width of the absorbing layer, 0 to 64 and under a third of nx and ny (small water: make
-                              it smaller); default 16 */
+                              it smaller); default 0 */
     float cell;           /* edge of a cell, 1e-4 to 1e3 m; default 0.025 */
     float depth;          /* d of Eq. 8: mean water depth, 1e-3 to 1e4 m; default 0.5. Waves run at sqrt(g d) */
     float snapshot_interval; /* seconds between snapshots, 0 (every tick) to 10; default 1/60 */

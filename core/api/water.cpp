@@ -12,7 +12,7 @@ frm_water_def default_water() {
     frm_water_def def{};
     def.nx = def.ny = 200;
     def.border = FRM_BORDER_ABSORBING;
-    def.border_cells = 16;
+    def.border_cells = 0;
     def.cell = 0.025f;
     def.depth = 0.5f;
     def.snapshot_interval = 1.0f / 60;

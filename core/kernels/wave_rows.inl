@@ -46,14 +46,20 @@ static inline void step_row_4(const WaveRows& r, float* const h, float* const u,
     float* const v_above_2 = v + 2 * r.stride;
     const float left = -r.outflow * h[0], right = r.wall_right ? r.outflow * h[r.count - 1] : 0.0f;
     const std::ptrdiff_t n = r.count, whole = (n + FRM_LANES - 1) / FRM_LANES * FRM_LANES, last = whole - FRM_LANES;
-    // The last vector and the one after it, with the cells' mirror images behind a wall.
-    alignas(64) float end_h[2 * FRM_LANES] = {}, end_u[2 * FRM_LANES] = {};
-    store(end_h, load(h + last));
+    // The last vector of cells and the one after it: behind a wall there are the cells' mirror images, and velocities
+    // go on as an odd function about the one on the wall.
+    const std::ptrdiff_t valid = n - last;
+    Lanes end_h = load(h + last), after_end_h = {};
+    float beyond = 0;
     if (r.wall_right) {
-        end_h[n - last] = h[n - 1];
-        end_h[n - last + 1] = h[n - 2];
+        const float h1 = h[n - 1], h2 = h[n - 2];
+        const float inner = u[n - 1] - (f1 * (h1 - h2) - f3 * (h1 - h[n - 3]));
+        beyond = 2 * right - inner;
+        end_h = with_lane(with_lane(end_h, valid, h1), valid + 1, h2);
+        after_end_h = with_lane(with_lane(after_end_h, valid - FRM_LANES, h1), valid + 1 - FRM_LANES, h2);
     }
-    const auto height_at = [&](std::ptrdiff_t i) { return i < last ? load(h + i) : load(end_h + (i - last)); };
+    const Lanes after_end_u = with_lane(with_lane(Lanes{}, valid - FRM_LANES, right), valid + 1 - FRM_LANES, beyond);
+    const auto height_at = [&](std::ptrdiff_t i) { return i < last ? load(h + i) : i == last ? end_h : after_end_h; };
     const auto faces_of = [&](std::ptrdiff_t i, Lanes before_x, Lanes x, Lanes after_x) {
         const Lanes near = x - FRM_FROM_LEFT(before_x, x);
         const Lanes far = FRM_FROM_RIGHT(x, after_x) - FRM_FROM_LEFT_2(before_x, x);
@@ -62,36 +68,31 @@ static inline void step_row_4(const WaveRows& r, float* const h, float* const u,
     Lanes height = height_at(0), before = load(h - FRM_LANES);
     if (r.wall_left) before = with_lane(with_lane(before, FRM_LANES - 1, h[0]), FRM_LANES - 2, h[1]);
     Lanes next = height_at(FRM_LANES), face = faces_of(0, before, height, next), face_before = load(u - FRM_LANES);
-    // Beyond a wall velocities go on as an odd function about the one on it.
     const auto patched = [&](Lanes faces) {
-        store(end_u, faces);
-        for (std::ptrdiff_t k = n - last; k < 2 * FRM_LANES; ++k) end_u[k] = 0;
-        end_u[n - last] = right;
-        if (r.wall_right) end_u[n - last + 1] = 2 * right - (n - last > 0 ? end_u[n - last - 1] : 0.0f);
-        return load(end_u);
+        return with_lane(with_lane(first_lanes(faces, valid), valid, right), valid + 1, beyond);
     };
     if (r.wall_left) {
         face[0] = left;
         face_before = with_lane(face_before, FRM_LANES - 1, 2 * left - face[1]);
     }
     if (last == 0) face = patched(face);
-    const auto heights = [&](std::ptrdiff_t i, Lanes next_face, std::ptrdiff_t valid) {
+    const auto heights = [&](std::ptrdiff_t i, Lanes next_face, std::ptrdiff_t cells) {
         Lanes above = load(v_above_2 + i);
         const Lanes below = load(v + i), near_above = load(v_above + i);
         if (moves_above) {
             const Lanes near = load(height_2 + i) - load(height_1 + i), far = load(height_3 + i) - height;
             above = above - (f1 * near - f3 * far);
-            store(v_above_2 + i, valid < FRM_LANES ? first_lanes(above, valid) : above);
+            store(v_above_2 + i, cells < FRM_LANES ? first_lanes(above, cells) : above);
         }
         const Lanes near = (FRM_FROM_RIGHT(face, next_face) - face) + (near_above - below);
         const Lanes far = (FRM_FROM_RIGHT_2(face, next_face) - FRM_FROM_LEFT(face_before, face)) +
                           (above - load(v_below + i));
         const Lanes now = height - (g1 * near - g3 * far);
-        store(h + i, valid < FRM_LANES ? first_lanes(now, valid) : now);
+        store(h + i, cells < FRM_LANES ? first_lanes(now, cells) : now);
     };
     std::ptrdiff_t i = 0;
     for (; i < last; i += FRM_LANES) {
-        const Lanes after = i + FRM_LANES < last ? height_at(i + 2 * FRM_LANES) : load(end_h + FRM_LANES);
+        const Lanes after = height_at(i + 2 * FRM_LANES);
         Lanes next_face = faces_of(i + FRM_LANES, height, next, after);
         if (i + FRM_LANES == last) next_face = patched(next_face);
         store(u + i, face);
@@ -99,9 +100,9 @@ static inline void step_row_4(const WaveRows& r, float* const h, float* const u,
         height = next, next = after;
         face_before = face, face = next_face;
     }
-    store(u + i, first_lanes(face, n - last + 1));
-    heights(i, load(end_u + FRM_LANES), n - i);
-    u[n] = right;
+    store(u + i, first_lanes(face, valid + 1));
+    heights(i, after_end_u, valid);
+    if (valid == FRM_LANES) u[n] = right;
 }
 
 static void wave_faces(float* __restrict v, const float* __restrict h, const float* __restrict below,

@@ -21,16 +21,11 @@ CalmTiles::CalmTiles(std::int32_t nx, std::int32_t ny, bool skip, std::pmr::memo
     rebuild();
 }
 
-void CalmTiles::step_around(std::int32_t tx, std::int32_t ty, std::uint32_t* stepped) {
-    for (std::int32_t y = std::max(0, ty - 1); y <= std::min(rows_ - 1, ty + 1); ++y)
-        for (std::int32_t x = std::max(0, tx - 1); x <= std::min(columns_ - 1, tx + 1); ++x) stepped[at(x, y)] = 1;
-}
-
 void CalmTiles::wake(const Rect& cells) {
-    const Rect r = cells.clipped(nx_, ny_);
-    if (!skip_ || r.empty()) return;
-    const std::int32_t x0 = std::max(0, r.i0 / side - 1), x1 = std::min(columns_ - 1, (r.i1 - 1) / side + 1);
-    const std::int32_t y0 = std::max(0, r.j0 / side - 1), y1 = std::min(rows_ - 1, (r.j1 - 1) / side + 1);
+    if (!skip_ || cells.empty()) return;
+    const Rect r = Rect{cells.i0 - reach, cells.j0 - reach, cells.i1 + reach, cells.j1 + reach}.clipped(nx_, ny_);
+    if (r.empty()) return;
+    const std::int32_t x0 = r.i0 / side, x1 = (r.i1 - 1) / side, y0 = r.j0 / side, y1 = (r.j1 - 1) / side;
     bool changed = false;
     for (std::int32_t y = y0; y <= y1; ++y)
         for (std::int32_t x = x0; x <= x1; ++x) {

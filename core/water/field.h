@@ -84,6 +84,8 @@ public:
     void wake(const Rect& cells) { tiles_.wake(cells); }
     /// Cells that a step goes through.
     std::size_t active_cells() const { return tiles_.active_cells(); }
+    /// From how many active cells on steps go through the rows together: for tests and benchmarks.
+    void go_together_from(std::size_t active_cells) { together_from_ = active_cells; }
     /// Lays a volume, in cells times metres, evenly over all of a closed basin: its calm level rises. Behind an open
     /// border there is more water than that, and nothing rises.
     void raise(double volume);
@@ -114,6 +116,7 @@ private:
     float* ends_;          ///< where damp_ points to, to be filled
     float keeps_for_ = 0;  ///< the dt of keep_ times the waves' speed, m
     CalmTiles tiles_;
+    std::size_t together_from_ = std::size_t{1} << 21;
     double level_ = 0;
 };
 

@@ -8,9 +8,8 @@
 namespace frm {
 namespace {
 
-constexpr std::int32_t border_cells = 8;            ///< of the window's absorbing layer
-constexpr std::int32_t alignment = 8;               ///< the window moves by whole cells of the coarsest level
-constexpr std::int32_t margin = 16 + border_cells;  ///< around the body: three of the coarsest cells, and the layer
+constexpr std::int32_t alignment = 8;  ///< the window moves by whole cells of the coarsest level
+constexpr std::int32_t margin = 24;    ///< around the body: three of the coarsest cells, and another
 constexpr std::int32_t largest_window = 512;
 constexpr float widest_splat = 8;  ///< cells of a Gaussian that a large source presses
 
@@ -22,7 +21,7 @@ FieldDef window_of(const FieldDef& water, float radius) {
         (cells < static_cast<float>(room) ? static_cast<std::int32_t>(cells) : room) + margin + alignment;
     def.nx = def.ny = 2 * ((half + alignment - 1) / alignment) * alignment;
     def.border = Border::absorbing;
-    def.border_cells = border_cells;
+    def.border_cells = 0;
     def.skip_calm_tiles = false;
     return def;
 }

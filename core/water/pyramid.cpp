@@ -60,13 +60,14 @@ bool Pyramid::add(int level, float x, float y, float amount) {
 }
 
 bool Pyramid::add_wide(float x, float y, float width, float amount) {
-    const float w = width * (1.0f / width_of_spline);
     int level = 0;
-    while (level < levels - 1 && w >= static_cast<float>(2 << level)) ++level;
+    while (level < levels - 2 && width >= width_of[level + 1]) ++level;
     const auto cell = static_cast<float>(1 << level);
-    const float share = level < levels - 1 && w > cell ? (w - cell) / cell : 0.0f;  // of the next level
+    const float below = width_of[level] * width_of[level], above = width_of[level + 1] * width_of[level + 1];
+    const float share = std::clamp((width * width - below) / (above - below), 0.0f, 1.0f);  // of the next level
     const float scale = 1.0f / cell, each = amount * scale * scale;
-    bool laid = add(level, x * scale, y * scale, each * (1.0f - share));
+    bool laid = true;
+    if (share < 1) laid = add(level, x * scale, y * scale, each * (1.0f - share));
     if (share > 0) laid = add(level + 1, x * (0.5f * scale), y * (0.5f * scale), 0.25f * each * share) && laid;
     return laid;
 }

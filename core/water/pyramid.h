@@ -15,9 +15,11 @@ namespace frm {
 class Pyramid {
 public:
     static constexpr int levels = 4;
-    /// Adds up to a spline on the finest grid as wide as a Gaussian of this many cells of its level: 0.5 of its own, and
-    /// 1/4, 1/16, ... from each gathering.
-    static constexpr float width_of_spline = 0.58f;
+    /// As wide as a Gaussian of this many cells of the finest grid is what a spline of each level adds up to there. Its
+    /// variance is 1/4 of its own cells squared, and 3/4 of the finer ones' at each gathering: sqrt(1/2 4^k - 1/4).
+    static constexpr float width_of[levels] = {0.5f, 1.3228757f, 2.7838822f, 5.6347138f};
+    /// The same for all but the finest, nearly, in cells of the level.
+    static constexpr float width_of_spline = 0.7f;
 
     /// `size`: cells along a side of the finest grid, a multiple of 2^(levels - 1).
     Pyramid(std::int32_t size, std::pmr::memory_resource* memory);
@@ -27,10 +29,10 @@ public:
     /// A quadratic B-spline around (x, y), in cells of the level, whose values add up to `amount`. False, and nothing
     /// laid, at the window's edge and beyond.
     bool add(int level, float x, float y, float amount);
-    /// The same, level by level, for a Gaussian `width` cells of the finest grid wide (between the levels in a straight
-    /// line), whose values on the finest grid add up to `amount`; at most widest() wide.
+    /// The same on the two levels between whose widths `width` (cells of the finest grid) lies, so that the variance is
+    /// that of such a Gaussian, whose values on the finest grid add up to `amount`; at most widest() wide.
     bool add_wide(float x, float y, float width, float amount);
-    static constexpr float widest() { return width_of_spline * static_cast<float>(1 << (levels - 1)); }
+    static constexpr float widest() { return width_of[levels - 1]; }
     /// Adds what was laid on coarse grids to the finest.
     void gather();
 

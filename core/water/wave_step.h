@@ -28,6 +28,7 @@ private:
 
     void turn(std::int32_t r, const Own& own);
     void rows(std::int32_t first, std::int32_t end, const Own& own);
+    void fetch(std::int32_t r, std::int32_t part, std::int32_t parts) const;
     void move(const Block& block, std::int32_t r, std::int32_t rows, bool with_faces, const WaveDamp* damp);
     void faces(std::int32_t m);
     void damp_row(const Block& block, std::int32_t r);

@@ -47,7 +47,7 @@ static void bad_defs(void) {
     frm_water_def def;
     size_t i;
     OK(init(&def, sizeof def));
-    CHECK(def.nx == 200 && def.ny == 200 && def.border == FRM_BORDER_ABSORBING && def.border_cells == 16);
+    CHECK(def.nx == 200 && def.ny == 200 && def.border == FRM_BORDER_ABSORBING && def.border_cells == 0);
     CHECK(def.cell == 0.025f && def.depth == 0.5f && def.snapshot_interval == 1.0f / 60);
     CHECK(def.centre_x == 0.0 && def.centre_y == 0.0 && def.order == 2);
     def.order = 3;
