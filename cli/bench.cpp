@@ -5,8 +5,10 @@
 
 #include "bake/flow/speed.h"
 #include "cli/bench_body.h"
+#include "cli/bench_lookup.h"
 #include "cli/bench_mujoco.h"
 #include "cli/bench_tick.h"
+#include "cli/bench_waves.h"
 #include "cli/command.h"
 
 namespace frm::cli {
@@ -52,8 +54,7 @@ private:
     std::vector<Result> results_;
 };
 
-void ticks(const Options& o, Results& out) {
-    const std::vector<std::uint8_t> large = bench_map(40, 2000), small = bench_map(26, 1000);
+void ticks(const Options& o, const std::vector<std::uint8_t>& large, Results& out) {
     const auto median = [&](const std::vector<std::uint8_t>& map, const TickScene& scene) {
         return measure_ticks(map, scene, o.seconds).quantile(0.5);
     };
@@ -67,16 +68,20 @@ void ticks(const Options& o, Results& out) {
             o.full ? "the same, 99.99 % of a million ticks" : "the same, 99.99 % of the ticks (a million with --full)",
             30);
     scene.cells = 128;
-    out.add("tick_128_us_median", median(small, scene), "us",
+    out.add("tick_128_us_median", median(bench_map(26, 1000), scene), "us",
             "two-way tick, 128 x 128 water, 26 sources, 1,000 triangles", 6);
+    out.add("submerged_body_us", median(large, {0, 1, 0, -1, true}), "us",
+            "tick of a body under flat water: 2,000 triangles and 40 sources");
 
-    TickScene deep{0, 1, 0, -1, true};
-    const double moving = median(large, deep);
-    deep.moving = false;
-    const double still = median(large, deep);
-    out.add("submerged_body_us", moving, "us", "body under flat water: 2,000 triangles and 40 sources");
-    out.add("lookup_ns_per_source", 1e3 * (moving - still) / 40, "ns", "what its motion adds, a source", 15);
+    // Of a thousand bodies, so that the clock and the call do not count.
+    const double none = median(large, {200, 0, 0, 0, true}), dry = median(large, {200, 0, 1000, 0, true});
+    out.add("dry_body_ns", dry - none, "ns", "a body far above the water", 50);
+    const double ten = median(large, {200, 10, 0, 0, true}), thousand = median(large, {200, 10, 990, 0, true});
+    out.add("ten_bodies_us", ten, "us", "tick of ten bodies in 200 x 200 water");
+    out.add("thousand_bodies_us", thousand - ten, "us", "what 990 more add that are far above it", 50);
+}
 
+void parts(const Options& o, const std::vector<std::uint8_t>& large, Results& out) {
     const BodyTimes body = measure_body(large, o.seconds);
     out.add("body_cut_us", body.cut, "us", "wet surface of 2,000 triangles, half wet in waves");
     out.add("body_wet_us", body.wet, "us", "the same, wholly wet under waves");
@@ -84,22 +89,36 @@ void ticks(const Options& o, Results& out) {
     out.add("body_displacement_us", body.displacement, "us", "its displaced volume, half wet");
     out.add("body_still_us", body.still, "us", "the same, of a body that has not moved");
     out.add("body_coupling_us", body.coupling, "us", "that into the water and its own waves");
-    out.add("body_dry_us", body.dry, "us", "all of it, above the water");
 
-    const double empty = median(large, {0, 0, 0, 0, true});
-    const double dry = median(large, {0, 0, 1000, 0, true});
-    out.add("dry_body_ns", dry - empty, "ns", "a body above the water: 1,000 of them in one tick, each", 50);
-    const double ten = median(large, {200, 10, 0, 0, true}), thousand = median(large, {200, 10, 990, 0, true});
-    out.add("ten_bodies_us", ten, "us", "tick of ten bodies in 200 x 200 water");
-    out.add("thousand_bodies_us", thousand - ten, "us", "what 990 more add that are far above it", 50);
-}
-
-void peers(const Options& o, Results& out) {
+    const LookupTimes lookup = measure_lookup(o.seconds);
+    out.add("lookup_ns_per_source", lookup.source, "ns", "Eq. 6 and all around it for 40 sources of a stroke, each",
+            15);
+    out.add("lookup_scattered_ns", lookup.scattered, "ns", "the same, each tick in another direction");
     const std::optional<MujocoFluid> mujoco = measure_mujoco(o.seconds);
+    out.add("coarse_body_ns", lookup.coarse, "ns", "a submerged body as one group of sources",
+            mujoco ? std::optional(mujoco->nanoseconds) : std::nullopt);
     if (!mujoco) return;
     out.add("mujoco_ellipsoid_ns", mujoco->nanoseconds, "ns", "MuJoCo's ellipsoid fluid model, a geom");
     out.add("mujoco_plate_cd", mujoco->plate_drag, "",
             "its drag coefficient of a box 8 x 1 x 30 face-on (Hoerner: 1.19)");
+}
+
+void waves(const Options& o, Results& out) {
+    const auto share = [&](const char* name, std::int32_t cells, const char* what) {
+        const WaveSpeed speed = measure_wave_speed(cells, 2, 1, o.seconds);
+        out.add(name, speed.roof_share(), "", what, 0.75);
+        return speed;
+    };
+    share("wave_128_roof_share", 128, "wave step of 128 x 128 cells, of what its bytes take in place in the cache");
+    const WaveSpeed speed = share("wave_200_roof_share", 200, "the same, 200 x 200");
+    share("wave_256_roof_share", 256, "the same, 256 x 256");
+    share("wave_512_roof_share", 512, "the same, 512 x 512");
+    out.add("wave_200_cell_ns", speed.cell_ns(), "ns", "a cell of 200 x 200, second order in space");
+    out.add("wave_200_cell_4_ns", measure_wave_speed(200, 4, 1, o.seconds).cell_ns(), "ns", "the same, fourth order");
+    out.add("wave_2048_stream_ratio", measure_wave_speed(2048, 2, 8, 2 * o.seconds).roof_share(), "",
+            "steps of 2048 x 2048 cells, eight a tick, against their bytes streamed from memory", 2);
+    out.add("wave_active64_us", measure_active_waves(2, o.seconds), "us",
+            "step of 64 x 64 cells with waves in 2048 x 2048", 3);
 }
 
 void flow(const Options& o, Results& out) {
@@ -114,8 +133,10 @@ void flow(const Options& o, Results& out) {
 
 void run(const Options& o) {
     Results results(o.json);
-    ticks(o, results);
-    peers(o, results);
+    const std::vector<std::uint8_t> large = bench_map(40, 2000);
+    ticks(o, large, results);
+    parts(o, large, results);
+    waves(o, results);
     flow(o, results);
     if (o.json) std::printf("%s\n", results.json().dump(2).c_str());
 }

@@ -19,8 +19,8 @@ struct TickScene {
     bool moving = true;         ///< else they rest
 };
 
-/// Ticks of 2 ms: `ticks` of them, or as many as there is time for in `seconds`, whichever comes first.
+/// Ticks of 2 ms: `ticks` of them, or as many as there is time for in `seconds` if those are fewer.
 TickTimes measure_ticks(const std::vector<std::uint8_t>& map_file, const TickScene& scene, double seconds,
-                        std::size_t ticks = SIZE_MAX);
+                        std::size_t ticks = 1000000);
 
 }  // namespace frm::cli
