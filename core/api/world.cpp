@@ -110,7 +110,17 @@ frm_status FRM_CALL frm_world_get_stats(frm_world world, frm_world_stats* stats)
             out.wet_bodies += body->wet_sources > 0;
             out.wet_sources += body->wet_sources;
             out.clipped_triangles += body->clipped_triangles;
+            out.frictionless_sources += body->skipped.friction;
+            out.steady_sources += body->skipped.steady;
         }
+        const World::Skipped& skipped = w.skipped();
+        out.dry_bodies = skipped.dry_bodies;
+        out.whole_bodies = skipped.whole_bodies;
+        out.still_bodies = skipped.still_bodies;
+        out.deep_bodies = skipped.deep_bodies;
+        out.coarse_bodies = skipped.coarse_bodies;
+        out.water_waits = skipped.water_waits;
+        if (w.water()) out.active_cells = static_cast<std::uint32_t>(w.water()->field.active_cells());
         write_struct(stats, out);
     });
 }

@@ -114,6 +114,7 @@ struct Body {
     Rotation<float> laid_rotation;
 
     bool all_wet() const { return wetness == Wetness::whole; }
+    bool by_one_evaluation = false;  ///< the wet surface of the last tick
     /// Centre and radius of a sphere around the surface, body frame, scaled.
     Vec3f centre() const;
     float radius() const;
@@ -122,12 +123,15 @@ struct Body {
 /// What of the surface is wet (section 6.2) and the hydrostatic force on it (Eqs. 1, 4 and 5). The water is a plane over
 /// each cluster of triangles: clusters that it leaves wholly wet or dry take one evaluation, the triangles of the others
 /// an exact clip. Under a calm surface a body that is wholly wet or dry takes one evaluation itself.
-void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid);
+void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid, std::uint32_t skip = skip_default);
 
 /// Lays the volume that the body displaces under the calm surface, `level` above its origin, into its footprint; with
 /// `spread`, the wider the deeper. `keep_still`: a body of which no point has moved by a thousandth of a cell since keeps
 /// what was laid; its volume under the surface is off by less than that times the area of its waterline.
 void lay_displacement(Body& body, float level, bool spread, bool keep_still = true);
+
+/// Instead: all of the body's volume counts as even over all of the water (FRM_SKIP_DEEP_BODIES).
+void leave_displacement(Body& body);
 
 /// Eq. 6 for every source, and the pressure of the upper sources laid into the footprint (section 6.3). `model` says by
 /// its bits: own_waves, that the water's velocity is taken without what the body itself made; displacement, that the

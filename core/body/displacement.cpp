@@ -23,7 +23,19 @@ bool has_stayed(const Body& body, float cell) {
     return length(moved) + static_cast<double>(turned) < static_cast<double>(still * cell);
 }
 
+/// All of the body's volume, in cells times metres.
+double volume_of(const Body& body, float cell) {
+    const auto scale = static_cast<double>(body.def.scale), per_cell = 1 / static_cast<double>(cell);
+    return body.def.map->shape.volume * scale * scale * scale * per_cell * per_cell;
+}
+
 }  // namespace
+
+void leave_displacement(Body& body) {
+    body.laid_at = body.def.pose.position;
+    body.laid_rotation = body.rotation;
+    body.footprint->leave(volume_of(body, body.footprint->cell()));
+}
 
 // The clip is against the calm surface, not the waves: the linear theory of Eqs. 7 and 8 takes what pushes the water
 // at its mean place. Against the waves, a column that the body pierces would be thicker where the water is higher and
@@ -46,8 +58,7 @@ void lay_displacement(Body& body, float level, bool spread, bool keep_still) {
     // In the map's lengths, volumes become cells times metres by this.
     const float to_amount = scale * scale * scale * (per_cell * per_cell);
     SliceLevel slice{1, 0, 0, spread ? 1.0f : 0.0f, to_cells * (widths_per_depth / Pyramid::width_of_spline)};
-    if (spread && (depth - reach) / scale * slice.width > deepest)
-        return footprint.leave(static_cast<double>(to_amount) * body.def.map->shape.volume);
+    if (spread && (depth - reach) / scale * slice.width > deepest) return footprint.leave(volume_of(body, cell));
 
     const Kernels& kernel = kernels();
     const float centre_depth = depth / scale, x0 = arm.x * per_cell, y0 = arm.y * per_cell;

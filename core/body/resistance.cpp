@@ -133,8 +133,8 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
     }
 
     LookupMotion motion = motion_of(body, fluid, dt, model, skip);
-    if ((body.budget.error > 0 || body.budget.time > 0) && body.wet_sources > 0 && surface.still &&
-        !own.field && !(body.footprint && body.pushes)) {
+    if ((body.budget.error > 0 || body.budget.time > 0) && body.wet_sources > 0 && surface.still && !own.field &&
+        !(body.footprint && body.pushes)) {
         if (const Level* level = choose_level(body, motion)) return look_up_groups(body, *level, motion);
     }
 
@@ -174,7 +174,7 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
     if (motion.skip_steady || !map.tables.any_swing)
         for (std::size_t l = 0; l < count; ++l)
             body.skipped.steady += map.tables.steady[l] && body.sources[l].wet_ratio > 0;
-    if (body.footprint && body.pushes) push_up(body, surface, spread);
+    if (body.footprint && body.pushes && !surface.waits) push_up(body, surface, spread);
     body.forces.pressure = wrench_of(body, sum, 0);
     body.forces.friction = wrench_of(body, sum, 4);
     body.relative_speed = area_sum > 0 ? speed_sum / area_sum : 0.0f;

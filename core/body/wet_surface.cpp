@@ -20,8 +20,20 @@ struct Range {
     bool flat() const { return low == high; }
 };
 
-HeightGrid heights_of(const Field& field) {
-    return {field.height_row(0), field.stride(), field.def().nx, field.def().ny, field.level()};
+/// Cells of the water under a body's box, with those that its edges are interpolated from.
+struct Under {
+    Rect cells;
+    bool wide = false;  ///< or not known: not looked through
+};
+
+HeightGrid heights_of(const SurfaceView& surface, const Under& under) {
+    const Field& field = *surface.field;
+    const float* heights = field.height_row(0);
+    if (surface.ahead > 0) {
+        field.heights_ahead(under.cells, surface.rise, surface.scratch);
+        heights = surface.scratch;
+    }
+    return {heights, field.stride(), field.def().nx, field.def().ny, field.level()};
 }
 
 /// Where the centre of the body's box lies over the water.
@@ -40,14 +52,20 @@ float support(const float along[3], const Vec3f& half) {
     return std::fabs(along[0]) * half.x + std::fabs(along[1]) * half.y + std::fabs(along[2]) * half.z;
 }
 
-Range range_over(const Body& body, const SurfaceView& surface, const GridPlacement& at) {
-    const HeightGrid grid = heights_of(*surface.field);
+Under under(const Body& body, const SurfaceView& surface, const GridPlacement& at) {
     const Vec3f& half = body.def.map->clusters.half;
     const float x = support(at.along_x, half) + 0.51f, y = support(at.along_y, half) + 0.51f;
-    if (!(x < widest_look && y < widest_look && std::fabs(at.x) < 1e6f && std::fabs(at.y) < 1e6f))
-        return {-infinite, infinite, true};
+    constexpr float far = 1e6f;
+    if (!(x < far && y < far && std::fabs(at.x) < far && std::fabs(at.y) < far))
+        return {{0, 0, surface.field->def().nx, surface.field->def().ny}, true};
     const auto first = [](float v) { return static_cast<std::int32_t>(std::floor(v)); };
-    Rect r{at.i + first(at.x - x), at.j + first(at.y - y), at.i + first(at.x + x) + 1, at.j + first(at.y + y) + 1};
+    return {{at.i + first(at.x - x), at.j + first(at.y - y), at.i + first(at.x + x) + 1, at.j + first(at.y + y) + 1},
+            !(x < widest_look && y < widest_look)};
+}
+
+Range range_over(const HeightGrid& grid, const Under& body) {
+    if (body.wide) return {-infinite, infinite, true};
+    Rect r = body.cells;
     if (r.i1 <= 0 || r.j1 <= 0 || r.i0 >= grid.nx || r.j0 >= grid.ny) return {};
     const bool inside = r.i0 >= 0 && r.j0 >= 0 && r.i1 <= grid.nx && r.j1 <= grid.ny;
     r = r.clipped(grid.nx, grid.ny);
@@ -193,7 +211,7 @@ Wet clipped_surface(Body& body, const BodyLevel& level, const HeightGrid* grid, 
 
 }  // namespace
 
-void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid) {
+void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fluid, std::uint32_t skip) {
     const Map& map = *body.def.map;
     const float scale = body.def.scale, inverse = 1 / scale;
     body.water_finite = true;
@@ -216,9 +234,12 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     const float height = std::min(reach, support(along_up, clusters.half) * scale * (1 + 1e-6f));
     Range range;
     GridPlacement at{};
+    HeightGrid grid{};
     if (surface.field) {
         at = placement(body, surface);
-        range = range_over(body, surface, at);
+        const Under cells = under(body, surface, at);
+        grid = heights_of(surface, cells);
+        range = range_over(grid, cells);
         if (!range.finite) {
             body.water_finite = false;
             return;
@@ -232,17 +253,18 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     const float plane = centre_level + (range.flat() ? range.low : 0.0f);  // else waves are sampled
     // Under waves the clusters' planes are laid so far above the body that each counts as wet, whatever their slopes.
     const float above = 4 * clusters.radius + (4 * (range.high - range.low) - range.low) * inverse;
-    const float rest = !all_wet ? plane * inverse : range.flat() ? 0.0f : above;
+    const bool at_once = all_wet && range.flat() && (skip & skip_wet_bodies) != 0;
+    const float rest = !all_wet ? plane * inverse : at_once ? 0.0f : above;
     const BodyLevel level{rest, {up.x, up.y, up.z}, inverse};
     Wet wet;
-    if (all_wet && range.flat()) {
+    body.by_one_evaluation = at_once;
+    if (at_once) {
         body.clipped_triangles = 0;
         if (body.wetness != Wetness::whole) set_sources(body, 1);
         wet = whole_surface(clusters.whole, level);
         body.wetness = Wetness::whole;
     } else {
         body.clipped_triangles = body.wet_sources = 0;
-        const HeightGrid grid = surface.field ? heights_of(*surface.field) : HeightGrid{};
         wet = clipped_surface(body, level, surface.field && !range.flat() ? &grid : nullptr, at);
         body.wetness = Wetness::partly;
         if (all_wet) set_sources(body, 1), body.wetness = Wetness::whole;

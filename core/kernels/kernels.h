@@ -49,6 +49,9 @@ struct Kernels {
     void (*wave_outflow)(float* v, const float* h, std::ptrdiff_t count, float factor);
     /// u[i] += factor (p[i] - p[i - behind]).
     void (*wave_push)(float* u, const float* p, std::ptrdiff_t behind, std::ptrdiff_t count, float factor);
+    /// out[i] = h[i] - factor ((u[i + 1] - u[i]) + (above[i] - below[i])): heights of a row later on.
+    void (*heights_ahead_row)(float* out, const float* h, const float* u, const float* below, const float* above,
+                              std::ptrdiff_t count, float factor);
     /// Whether any |x| of rows is above the limit, or not a number.
     bool (*any_above)(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit);
     void (*scale)(float* x, std::ptrdiff_t count, float factor);

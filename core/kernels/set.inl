@@ -42,6 +42,7 @@ const Kernels kernels{
     wave_faces_4,
     wave_outflow,
     wave_push,
+    heights_ahead_row,
     any_above,
     scale,
     scale_ends,

@@ -177,6 +177,12 @@ static void wave_rows_4(const WaveRows& rows, float f1, float f3, float g1, floa
     }
 }
 
+static void heights_ahead_row(float* __restrict out, const float* __restrict h, const float* __restrict u,
+                              const float* __restrict below, const float* __restrict above, std::ptrdiff_t count,
+                              float factor) {
+    for (std::ptrdiff_t i = 0; i < count; ++i) out[i] = h[i] - factor * ((u[i + 1] - u[i]) + (above[i] - below[i]));
+}
+
 static bool any_above(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit) {
     for (std::ptrdiff_t j = 0; j < rows; ++j, x += stride) {
         std::int32_t within = 1;

@@ -35,6 +35,15 @@ void CalmTiles::wake(const Rect& cells) {
     if (changed) rebuild();
 }
 
+bool CalmTiles::rest(const Rect& cells) const {
+    const Rect r = cells.clipped(nx_, ny_);
+    if (active_cells_ == 0 || r.empty()) return true;
+    for (std::int32_t y = r.j0 / side; y <= (r.j1 - 1) / side; ++y)
+        for (std::int32_t x = r.i0 / side; x <= (r.i1 - 1) / side; ++x)
+            if (stepped_[at(x, y)]) return false;
+    return true;
+}
+
 void CalmTiles::sleep_all() {
     if (!skip_) return;
     clock_ = 0;

@@ -46,6 +46,8 @@ public:
 
     /// Something is written into these cells, or their faces.
     void wake(const Rect& cells);
+    /// None of these cells is stepped: all is zero there.
+    bool rest(const Rect& cells) const;
     void sleep_all();
 
     /// Steps until the next look.

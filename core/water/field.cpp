@@ -5,6 +5,8 @@
 #include <cstring>
 #include <memory>
 
+#include "core/kernels/kernels.h"
+
 namespace frm {
 namespace {
 
@@ -94,6 +96,25 @@ void Field::velocity_at(const GridOrigin& o, float x, float y, float& u, float& 
     if (!(px >= 0 && py >= 0 && px <= static_cast<float>(def_.nx) && py <= static_cast<float>(def_.ny))) return;
     u = bilinear(u_, def_.nx + 1, def_.ny, stride_, o, gx, gy - 0.5f);
     v = bilinear(v_, def_.nx, def_.ny + 1, stride_, o, gx - 0.5f, gy);
+}
+
+void Field::pull_at(const GridOrigin& o, float x, float y, float pull, float& u, float& v) const {
+    const std::int32_t fx = whole_below(o.x + x), fy = whole_below(o.y + y), i = o.i + fx, j = o.j + fy;
+    u = v = 0;
+    if (i < 1 || j < 1 || i > def_.nx - 2 || j > def_.ny - 2) return;
+    // The slopes at the faces around, as those of velocity_at without its interpolation across them.
+    const float s = o.x + x - static_cast<float>(fx), t = o.y + y - static_cast<float>(fy);
+    const float *below = height_row(j - 1) + i, *h = height_row(j) + i, *above = height_row(j + 1) + i;
+    u = -pull * ((1 - s) * (h[0] - h[-1]) + s * (h[1] - h[0]));
+    v = -pull * ((1 - t) * (h[0] - below[0]) + t * (above[0] - h[0]));
+}
+
+void Field::heights_ahead(const Rect& cells, float factor, float* out) const {
+    const Rect r = cells.clipped(def_.nx, def_.ny);
+    const auto row = kernels().heights_ahead_row;
+    for (std::int32_t j = r.j0; j < r.j1; ++j)
+        row(out + j * stride_ + r.i0, height_row(j) + r.i0, velocity_x_row(j) + r.i0, velocity_y_row(j) + r.i0,
+            velocity_y_row(j + 1) + r.i0, r.i1 - r.i0, factor);
 }
 
 void Field::raise(double volume) {

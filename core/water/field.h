@@ -68,6 +68,11 @@ public:
     /// Bilinear; zero outside.
     float height_at(const GridOrigin& origin, float x, float y) const;
     void velocity_at(const GridOrigin& origin, float x, float y, float& u, float& v) const;
+    /// What the velocity there goes on by (Eq. 7), over a time in which each m of slope a cell adds `pull` m/s.
+    void pull_at(const GridOrigin& origin, float x, float y, float pull, float& u, float& v) const;
+    /// The heights of some cells a time later (Eq. 8), `factor` = that time * depth / cell, into an array with rows as far
+    /// apart as these.
+    void heights_ahead(const Rect& cells, float factor, float* out) const;
 
     /// Floats from one row to the next, in each of the arrays.
     std::ptrdiff_t stride() const { return stride_; }
@@ -82,6 +87,8 @@ public:
 
     /// To be told before anything is written into cells or their faces through the rows above.
     void wake(const Rect& cells) { tiles_.wake(cells); }
+    /// All is at rest in these cells.
+    bool rests(const Rect& cells) const { return tiles_.rest(cells); }
     /// Cells that a step goes through.
     std::size_t active_cells() const { return tiles_.active_cells(); }
     /// From how many active cells on steps go through the rows together: for tests and benchmarks.

@@ -22,7 +22,6 @@ FieldDef window_of(const FieldDef& water, float radius) {
     def.nx = def.ny = 2 * ((half + alignment - 1) / alignment) * alignment;
     def.border = Border::absorbing;
     def.border_cells = 0;
-    def.skip_calm_tiles = false;
     return def;
 }
 
@@ -98,6 +97,12 @@ void Footprint::deposit(int level, float x, float y, float amount) {
 
 void Footprint::gather() { thickness_.gather(); }
 
+bool Footprint::is_deep(float shallowest) const {
+    const float width = widths_per_depth * shallowest;  // the middle goes down with its square
+    const float widest = Pyramid::widest() * cell_;
+    return shallowest > 0 && widest * widest < deep_share * width * width;
+}
+
 void Footprint::keep() { kept_ = true; }
 
 float Footprint::deposited_share() const {
@@ -146,7 +151,7 @@ void Footprint::splat_wide(float x, float y, float width, float amount) {
 }
 
 void Footprint::end() {
-    active_ = active();
+    active_ = own.active_cells() > 0;
     if (kept_) return;
     volume_ = laid_ + rest_;
     if (first) first_volume_ = volume_;

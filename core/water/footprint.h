@@ -35,6 +35,10 @@ public:
     void leave(double amount) { rest_ += amount; }
     /// After the last deposit.
     void gather();
+    /// So deep that of what is pushed or displaced `shallowest` under the calm surface, m, less than `deep_share` is seen
+    /// at the surface.
+    bool is_deep(float shallowest) const;
+    static constexpr float deep_share = 0.01f;
     /// Instead of deposits: the thickness is still that of the tick before.
     void keep();
 
@@ -54,6 +58,7 @@ public:
     const Rect& wet() const { return thickness_.wet(); }  ///< cells with thickness in this tick, in the window
     const Rect& wet_before() const { return wet_before_; }
     const Rect& pressed() const { return pressure_.wet(); }  ///< cells with pressure in this tick
+    bool kept() const { return kept_; }
     /// The thickness is not that of the tick before.
     bool changed() const { return !kept_ && !(wet().empty() && wet_before_.empty() && rest_ == rest_before_); }
     /// `own` is not calm, or will not be after this tick's coupling.
@@ -65,6 +70,8 @@ public:
     const float* pressure() const { return pressure_.data(); }
     GridOrigin body_in_window() const;
 
+    /// In a tick in which the water waits: only where the body is.
+    void follow(const GridOrigin& body) { body_ = body; }
     /// Ends a tick: this tick's thickness is the next one's thickness before.
     void end();
     void hash(StateHash& hash) const;

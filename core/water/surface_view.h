@@ -14,11 +14,23 @@ struct SurfaceView {
     bool still = true;             ///< the water near the body is at rest
     GridOrigin origin;             ///< the body's origin in the field
     float cells_per_metre = 0;
+    /// The field is of `ahead` seconds ago (FRM_SKIP_WAVE_STEPS); heights and velocities go on as Eqs. 7 and 8 say.
+    float ahead = 0;
+    bool waits = false;        ///< nothing is done to the water in this tick
+    float rise = 0, pull = 0;  ///< of that time: see Field::heights_ahead, pull_at
+    float* scratch = nullptr;  ///< as large as the field's heights
 
     /// Horizontal velocity of the water; u_z is taken as zero (section 6.3).
     Vec3f velocity(const Vec3f& p) const {
         Vec3f v;
-        if (field) field->velocity_at(origin, p.x * cells_per_metre, p.y * cells_per_metre, v.x, v.y);
+        if (!field) return v;
+        const float x = p.x * cells_per_metre, y = p.y * cells_per_metre;
+        field->velocity_at(origin, x, y, v.x, v.y);
+        if (ahead > 0) {
+            Vec3f more;
+            field->pull_at(origin, x, y, pull, more.x, more.y);
+            v += more;
+        }
         return v;
     }
 };

@@ -29,6 +29,9 @@ public:
     /// Null while the host presses nowhere.
     const float* pressure() const { return pressed_ ? pressure_.data() : nullptr; }
 
+    /// As many floats as the field's heights take, for whoever is at work on a tick (SurfaceView::scratch).
+    float* scratch() { return scratch_.data(); }
+
     /// Publishes a snapshot when the interval has passed.
     void offer_snapshot(std::uint64_t tick, double time);
 
@@ -40,7 +43,7 @@ private:
     WaterDef def_;
     double next_snapshot_ = 0;
     bool pressed_ = false;
-    std::pmr::vector<float> pressure_;
+    std::pmr::vector<float> pressure_, scratch_;
 };
 
 }  // namespace frm

@@ -47,6 +47,7 @@ std::uint64_t World::hash() const {
     hash.value(def_.time_budget);
     hash.value(ticks_);
     hash.value(time_);
+    hash.value(behind_);
     if (water_) hash_water(hash, *water_);
     for (const auto& body : bodies_) hash_body(hash, *body);
     return hash.result();

@@ -31,7 +31,10 @@ World::World(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resour
 }
 
 Water& World::create_water(const WaterDef& def) {
-    water_ = std::allocate_shared<Water>(std::pmr::polymorphic_allocator<Water>(memory_), def, memory_);
+    WaterDef with = def;
+    with.field.skip_calm_tiles &= (def_.skip & skip_calm_water) != 0;
+    water_ = std::allocate_shared<Water>(std::pmr::polymorphic_allocator<Water>(memory_), with, memory_);
+    behind_ = 0;
     try {
         for (const auto& body : bodies_) give_footprint(*body);
         if (observer_) observer_->water_created(*this);
@@ -52,6 +55,7 @@ void World::destroy_water() {
 
 void World::set_height(const float* height) {
     water_->set_height(height);
+    behind_ = 0;
     water_->offer_snapshot(ticks_, time_);
     if (observer_) observer_->height_set(*this, height, water_->field.cells());
 }
@@ -101,59 +105,116 @@ SurfaceView World::view_from(const Body& body) const {
     view.level = static_cast<float>(def_.level - body.def.pose.position.z);
     view.highest = 0;
     if (water_) {
+        const FieldDef& field = water_->def().field;
         view.highest = 3e38f;
         view.field = &water_->field;
-        view.still = false;
         view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
-        view.cells_per_metre = 1.0f / water_->def().field.cell;
+        view.cells_per_metre = 1.0f / field.cell;
+        view.ahead = behind_;
+        view.rise = behind_ * field.depth / field.cell;
+        view.pull = behind_ * def_.fluid.gravity / field.cell;
+        view.scratch = water_->scratch();
+        const Vec3f centre = body.rotation.to_world(body.centre()) * view.cells_per_metre;
+        const auto reach = static_cast<std::int32_t>(std::min(body.radius() * view.cells_per_metre, 1e6f)) + 2;
+        const std::int32_t i = view.origin.i +
+                               static_cast<std::int32_t>(view.origin.x + std::clamp(centre.x, -1e6f, 1e6f)),
+                           j = view.origin.j +
+                               static_cast<std::int32_t>(view.origin.y + std::clamp(centre.y, -1e6f, 1e6f));
+        view.still = water_->field.rests({i - reach, j - reach, i + reach, j + reach});
     }
     return view;
 }
 
-bool World::tick(float dt) {
-    std::uint32_t substeps = 0;
-    if (water_) {
-        // Where the velocity is forced in each step, a step leaves u = U - dt g dh/dx, and heights diffuse with g d dt:
-        // stable for a Courant number up to 1/2 only, and not 1 / sqrt(2).
-        const float courant = def_.model & model_displacement ? 1.0f : 0.70710678f;
-        const float needed = std::ceil(dt / (courant * Field::stable_step(water_->def().field, def_.fluid.gravity)));
-        if (!(needed <= static_cast<float>(max_substeps)))
-            throw Error(FRM_ERROR_LIMIT,
-                        "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
-                        static_cast<double>(dt), static_cast<double>(needed), max_substeps);
-        substeps = std::max(1u, static_cast<std::uint32_t>(needed));
-    }
+// Linear waves are not higher than the water is deep.
+bool World::cannot_be_wet(const Body& body) const {
+    const float centre = dot(body.rotation.row2, body.centre());
+    const double low = body.def.pose.position.z + static_cast<double>(centre - body.radius()) - def_.level;
+    return !def_.everywhere && low > (water_ ? static_cast<double>(water_->def().field.depth) : 0.0);
+}
 
-    bool diverged = false;
+World::WaveTime World::time_waves(float dt) const {
+    if (!water_) return {};
+    const bool displaces = (def_.model & model_displacement) != 0;
+    // Where the velocity is forced in each step, a step leaves u = U - dt g dh/dx, and heights diffuse with g d dt:
+    // stable for a Courant number up to 1/2 only, and not 1 / sqrt(2).
+    const float courant = displaces ? 1.0f : 0.70710678f;
+    const float stable = courant * Field::stable_step(water_->def().field, def_.fluid.gravity);
+    const float time = behind_ + dt, needed = std::ceil(time / stable);
+    if (!(needed <= static_cast<float>(max_substeps)))
+        throw Error(FRM_ERROR_LIMIT,
+                    "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
+                    static_cast<double>(dt), static_cast<double>(needed), max_substeps);
+    if (def_.skip & skip_wave_steps && displaces && time + dt <= stable) return {time, 0};
+    return {time, std::max(1u, static_cast<std::uint32_t>(needed))};
+}
+
+void World::tick_body(Body& body, float dt, float time_budget, bool water_waits) {
+    // What was dry without a wave of its own stays so: its forces are as they were, but for its weight.
+    const bool settled =
+        body.wetness == Wetness::dry && (!body.footprint || (!body.footprint->first && !body.footprint->active()));
+    if (settled && def_.skip & skip_dry_bodies && cannot_be_wet(body)) {
+        ++skipped_.dry_bodies;
+        sum_forces(body, def_.fluid);
+        return;
+    }
+    SurfaceView view = view_from(body);
+    view.waits = water_waits;
+    const bool spread = (def_.model & model_displacement) != 0;
+    bool deep = false;
+    if (body.footprint) {
+        deep = spread && def_.skip & skip_deep_bodies &&
+               body.footprint->is_deep(view.level - dot(body.rotation.row2, body.centre()) - body.radius());
+        if (water_waits) {
+            body.footprint->follow(view.origin);
+        } else {
+            const Vec3f centre = body.rotation.to_world(body.centre());
+            const GridOrigin at = water_->origin_at(body.def.pose.position.x + static_cast<double>(centre.x),
+                                                    body.def.pose.position.y + static_cast<double>(centre.y));
+            body.footprint->begin(at.i, at.j, view.origin, spread ? &water_->field : nullptr);
+        }
+    }
+    body.pushes = !deep;
+    measure_wet_surface(body, view, def_.fluid, def_.skip);
+    if (body.footprint && !water_waits) {
+        if (deep)
+            leave_displacement(body);
+        else
+            lay_displacement(body, view.level, spread, (def_.skip & skip_still_bodies) != 0);
+        skipped_.still_bodies += body.footprint->kept();
+        skipped_.deep_bodies += deep;
+    }
+    body.budget = {def_.error_budget, time_budget};
+    look_up_resistance(body, view, def_.fluid, dt, def_.model, def_.skip);
+    skipped_.whole_bodies += body.by_one_evaluation;
+    skipped_.coarse_bodies += body.detail.groups > 0;
+    sum_forces(body, def_.fluid);
+}
+
+bool World::tick(float dt) {
+    const WaveTime waves = time_waves(dt);
+    const bool waits = water_ && waves.steps == 0;
     std::uint32_t wet = 0;
     for (const auto& body : bodies_) wet += body->wet_sources > 0;
-    const float time_each = def_.time_budget / static_cast<float>(std::max(1u, wet));  // by who was wet in the last tick
-    const bool spread = (def_.model & model_displacement) != 0;
+    const float time_each =
+        def_.time_budget / static_cast<float>(std::max(1u, wet));  // by who was wet in the last tick
+
+    bool diverged = false;
+    skipped_ = {0, 0, 0, 0, 0, skipped_.water_waits + waits};
     for (const auto& body : bodies_) {
-        const SurfaceView view = view_from(*body);
-        if (body->footprint) {
-            const Vec3f centre = body->rotation.to_world(body->centre());
-            const GridOrigin at = water_->origin_at(body->def.pose.position.x + static_cast<double>(centre.x),
-                                                    body->def.pose.position.y + static_cast<double>(centre.y));
-            body->footprint->begin(at.i, at.j, view.origin, spread ? &water_->field : nullptr);
-        }
-        measure_wet_surface(*body, view, def_.fluid);
-        if (body->footprint) lay_displacement(*body, view.level, spread, (def_.skip & skip_still_bodies) != 0);
-        body->budget = {def_.error_budget, time_each};
-        look_up_resistance(*body, view, def_.fluid, dt, def_.model, def_.skip);
-        sum_forces(*body, def_.fluid);
+        tick_body(*body, dt, time_each, waits);
         if (!body->water_finite || !finite(body->forces)) {
             forget_forces(*body);
             diverged = true;
         }
     }
-    if (water_) move_water(dt, substeps);
+    behind_ = waits ? waves.time : 0.0f;
+    if (water_ && !waits) move_water(waves.time, waves.steps);
     if (diverged && water_) calm_water();
 
     ++ticks_;
     time_ += static_cast<double>(dt);
-    substeps_ = substeps;
-    if (water_) water_->offer_snapshot(ticks_, time_);
+    substeps_ = waves.steps;
+    if (water_) water_->offer_snapshot(ticks_, time_ - static_cast<double>(behind_));
     if (observer_) observer_->ticked(*this, dt);
     return !diverged;
 }

@@ -46,6 +46,14 @@ public:
     std::uint64_t ticks() const { return ticks_; }
     double time() const { return time_; }
     std::uint32_t substeps() const { return substeps_; }
+    /// What the last tick left out (frm_world_stats), and water_waits since the beginning.
+    struct Skipped {
+        std::uint32_t dry_bodies = 0, whole_bodies = 0, still_bodies = 0, deep_bodies = 0, coarse_bodies = 0;
+        std::uint64_t water_waits = 0;
+    };
+    const Skipped& skipped() const { return skipped_; }
+    /// How long ago the water was as its field is, s.
+    float water_behind() const { return behind_; }
     std::uint32_t bodies_created() const { return next_body_; }
 
     Water& create_water(const WaterDef& def);
@@ -72,7 +80,15 @@ public:
     WorldObserver* observer() const { return observer_; }
 
 private:
+    /// How the water goes on in a tick: `steps` of it over all the time that it is behind; 0 steps, it waits.
+    struct WaveTime {
+        float time = 0;
+        std::uint32_t steps = 0;
+    };
+    WaveTime time_waves(float dt) const;
     SurfaceView view_from(const Body& body) const;
+    bool cannot_be_wet(const Body& body) const;
+    void tick_body(Body& body, float dt, float time_budget, bool water_waits);
     void give_footprint(Body& body);
     void move_water(float dt, std::uint32_t substeps);
     void calm_water();
@@ -86,6 +102,8 @@ private:
     WorldObserver* observer_ = nullptr;
     std::uint64_t ticks_ = 0;
     double time_ = 0;
+    float behind_ = 0;
+    Skipped skipped_;
     std::uint32_t substeps_ = 0, next_body_ = 0;
 };
 

@@ -127,7 +127,7 @@ TEST_CASE("a body at rest leaves the water at rest, and ripples do not grow at i
 TEST_CASE("towed under calm water a body feels what its map says", "[coupling]") {
     const float speed = 0.4f;
     const auto towed = [&](std::uint32_t model, double z, bool water) {
-        WorldDef def;
+        WorldDef def = test::stepped();
         def.model = model;
         World world = test::world_of(def);
         if (water) world.create_water(test::water_of(200, 0.05f, 1.0f));
@@ -156,7 +156,7 @@ TEST_CASE("towed under calm water a body feels what its map says", "[coupling]")
 
 TEST_CASE("another body's waves are felt in full", "[coupling]") {
     const auto felt = [](bool own_waves) {
-        WorldDef def;
+        WorldDef def = test::stepped();
         def.model = model_displacement | (own_waves ? model_own_waves : 0u);
         World world = test::world_of(def);
         world.create_water(test::water_of(200, 0.025f, 0.5f));
@@ -189,7 +189,7 @@ TEST_CASE("a body carried along by the water feels no resistance", "[coupling]")
 }
 
 TEST_CASE("a rising body's pressure lifts the water above it", "[coupling]") {
-    WorldDef def;
+    WorldDef def = test::stepped();
     def.model = model_paper;
     World world = test::world_of(def);
     Water& water = world.create_water(test::water_of(96, 0.025f, 0.5f));
@@ -205,7 +205,7 @@ TEST_CASE("a rising body's pressure lifts the water above it", "[coupling]") {
 }
 
 TEST_CASE("the paper's rule gives the water inside a body the body's velocity", "[coupling]") {
-    WorldDef def;
+    WorldDef def = test::stepped();
     def.model = model_paper;
     World world = test::world_of(def);
     Water& water = world.create_water(test::water_of(96, 0.025f, 0.5f));
@@ -258,7 +258,7 @@ TEST_CASE("waves beyond all numbers are reported, and the world goes on", "[coup
 
 TEST_CASE("the paper's rule stays bounded where steps are as long as they may be", "[coupling]") {
     // Forced velocity makes heights diffuse; with a Courant number above 1/2 this scene was not finite after 0.6 s.
-    WorldDef def;
+    WorldDef def = test::stepped();
     def.model = model_paper;
     World world = test::world_of(def);
     Water& water = world.create_water(test::water_of(128, 0.025f, 2.0f));
@@ -273,7 +273,7 @@ TEST_CASE("the paper's rule stays bounded where steps are as long as they may be
 TEST_CASE("a body that stays keeps what it has laid, and the waves are the same", "[coupling]") {
     // A slow heave: of 0.1 mm a tick at most, on cells of 50 mm, so that most ticks near the turning points are kept.
     const auto waves = [](std::uint32_t skip) {
-        WorldDef def;
+        WorldDef def = test::stepped();
         def.skip = skip;
         World world = test::world_of(def);
         Water& water = world.create_water(test::water_of(96, 0.05f, 0.5f, Border::reflecting));

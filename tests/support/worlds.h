@@ -88,6 +88,13 @@ inline WaterDef water_of(std::int32_t cells, float cell, float depth, Border bor
     return def;
 }
 
-inline World world_of(const WorldDef& def = {}, std::uint32_t threads = 1) { return World(def, threads, memory()); }
+/// Steps its waves in every tick: for tests that look at the water right after one.
+inline WorldDef stepped() {
+    WorldDef def;
+    def.skip &= ~static_cast<std::uint32_t>(skip_wave_steps);
+    return def;
+}
+
+inline World world_of(const WorldDef& def = stepped(), std::uint32_t threads = 1) { return World(def, threads, memory()); }
 
 }  // namespace frm::test
