@@ -130,6 +130,7 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
         own.field = &body.footprint->own;
         own.origin = body.footprint->body_in_window();
         own.cells_per_metre = surface.cells_per_metre;
+        own.pull = surface.pull;
     }
 
     LookupMotion motion = motion_of(body, fluid, dt, model, skip);

@@ -30,7 +30,7 @@ HeightGrid heights_of(const SurfaceView& surface, const Under& under) {
     const Field& field = *surface.field;
     const float* heights = field.height_row(0);
     if (surface.ahead > 0) {
-        field.heights_ahead(under.cells, surface.rise, surface.scratch);
+        field.heights_ahead(under.cells, surface.rise, surface.bend, surface.scratch);
         heights = surface.scratch;
     }
     return {heights, field.stride(), field.def().nx, field.def().ny, field.level()};

@@ -49,9 +49,10 @@ struct Kernels {
     void (*wave_outflow)(float* v, const float* h, std::ptrdiff_t count, float factor);
     /// u[i] += factor (p[i] - p[i - behind]).
     void (*wave_push)(float* u, const float* p, std::ptrdiff_t behind, std::ptrdiff_t count, float factor);
-    /// out[i] = h[i] - factor ((u[i + 1] - u[i]) + (above[i] - below[i])): heights of a row later on.
-    void (*heights_ahead_row)(float* out, const float* h, const float* u, const float* below, const float* above,
-                              std::ptrdiff_t count, float factor);
+    /// Heights of a row later on: out[i] = h[i] - rise times the divergence + bend times the sum of the differences to the
+    /// four neighbours. `v` and `v_above` are the faces below and above the row.
+    void (*heights_ahead_row)(float* out, const float* h, const float* h_below, const float* h_above, const float* u,
+                              const float* v, const float* v_above, std::ptrdiff_t count, float rise, float bend);
     /// Whether any |x| of rows is above the limit, or not a number.
     bool (*any_above)(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit);
     void (*scale)(float* x, std::ptrdiff_t count, float factor);

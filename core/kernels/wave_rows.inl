@@ -177,10 +177,13 @@ static void wave_rows_4(const WaveRows& rows, float f1, float f3, float g1, floa
     }
 }
 
-static void heights_ahead_row(float* __restrict out, const float* __restrict h, const float* __restrict u,
-                              const float* __restrict below, const float* __restrict above, std::ptrdiff_t count,
-                              float factor) {
-    for (std::ptrdiff_t i = 0; i < count; ++i) out[i] = h[i] - factor * ((u[i + 1] - u[i]) + (above[i] - below[i]));
+static void heights_ahead_row(float* __restrict out, const float* h, const float* h_below, const float* h_above,
+                              const float* u, const float* v, const float* v_above, std::ptrdiff_t count, float rise,
+                              float bend) {
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+        const float around = (h[i - 1] + h[i + 1]) + (h_below[i] + h_above[i]);
+        out[i] = h[i] - rise * ((u[i + 1] - u[i]) + (v_above[i] - v[i])) + bend * (around - 4 * h[i]);
+    }
 }
 
 static bool any_above(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit) {

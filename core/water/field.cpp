@@ -109,12 +109,19 @@ void Field::pull_at(const GridOrigin& o, float x, float y, float pull, float& u,
     v = -pull * ((1 - t) * (h[0] - below[0]) + t * (above[0] - h[0]));
 }
 
-void Field::heights_ahead(const Rect& cells, float factor, float* out) const {
+void Field::heights_ahead(const Rect& cells, float rise, float bend, float* out) const {
     const Rect r = cells.clipped(def_.nx, def_.ny);
     const auto row = kernels().heights_ahead_row;
-    for (std::int32_t j = r.j0; j < r.j1; ++j)
-        row(out + j * stride_ + r.i0, height_row(j) + r.i0, velocity_x_row(j) + r.i0, velocity_y_row(j) + r.i0,
-            velocity_y_row(j + 1) + r.i0, r.i1 - r.i0, factor);
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        const float* const h = height_row(j);
+        const float *const u = velocity_x_row(j), *const v = velocity_y_row(j), *const above = velocity_y_row(j + 1);
+        float* const to = out + j * stride_;
+        // No slope at a border.
+        row(to + r.i0, h + r.i0, height_row(std::max(j - 1, 0)) + r.i0, height_row(std::min(j + 1, def_.ny - 1)) + r.i0,
+            u + r.i0, v + r.i0, above + r.i0, r.i1 - r.i0, rise, bend);
+        for (const std::int32_t i : {0, def_.nx - 1})
+            if (i >= r.i0 && i < r.i1) to[i] = h[i] - rise * ((u[i + 1] - u[i]) + (above[i] - v[i]));
+    }
 }
 
 void Field::raise(double volume) {
@@ -134,6 +141,16 @@ void Field::set_heights(const float* height) {
     wake({0, 0, def_.nx, def_.ny});
     const auto nx = static_cast<std::size_t>(def_.nx);
     for (std::int32_t j = 0; j < def_.ny; ++j, height += nx) std::memcpy(height_row(j), height, nx * sizeof(float));
+}
+
+void Field::start_from_rest(float dt, float gravity) {
+    const float half = 0.5f * dt * gravity / def_.cell;
+    for (std::int32_t j = 0; j < def_.ny; ++j) {
+        const float *h = height_row(j), *below = height_row(std::max(j - 1, 0));
+        float *u = velocity_x_row(j), *v = velocity_y_row(j);
+        for (std::int32_t i = 1; i < def_.nx; ++i) u[i] = half * (h[i] - h[i - 1]);
+        for (std::int32_t i = 0; i < def_.nx; ++i) v[i] = half * (h[i] - below[i]);
+    }
 }
 
 void Field::calm() {

@@ -70,9 +70,10 @@ public:
     void velocity_at(const GridOrigin& origin, float x, float y, float& u, float& v) const;
     /// What the velocity there goes on by (Eq. 7), over a time in which each m of slope a cell adds `pull` m/s.
     void pull_at(const GridOrigin& origin, float x, float y, float pull, float& u, float& v) const;
-    /// The heights of some cells a time later (Eq. 8), `factor` = that time * depth / cell, into an array with rows as far
-    /// apart as these.
-    void heights_ahead(const Rect& cells, float factor, float* out) const;
+    /// The heights of some cells a time t later (Eq. 8, to second order), into an array with rows as far apart as these:
+    /// `rise` = t * depth / cell; `bend` = (t + step) t / 2 * gravity * depth / cell^2, because the velocities are those of
+    /// half a step ago.
+    void heights_ahead(const Rect& cells, float rise, float bend, float* out) const;
 
     /// Floats from one row to the next, in each of the arrays.
     std::ptrdiff_t stride() const { return stride_; }
@@ -103,6 +104,8 @@ public:
     void copy_heights(float* out) const;
     /// Calm but for these heights.
     void set_heights(const float* height);
+    /// Before the first step of `dt` after set_heights: water that is at rest now had velocities half a step ago.
+    void start_from_rest(float dt, float gravity);
     void calm();
     /// Moves the window over the water: what was at cell (i + di, j + dj) is at (i, j) afterwards; new cells are calm.
     void shift(std::int32_t di, std::int32_t dj);

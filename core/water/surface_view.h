@@ -17,7 +17,7 @@ struct SurfaceView {
     /// The field is of `ahead` seconds ago (FRM_SKIP_WAVE_STEPS); heights and velocities go on as Eqs. 7 and 8 say.
     float ahead = 0;
     bool waits = false;        ///< nothing is done to the water in this tick
-    float rise = 0, pull = 0;  ///< of that time: see Field::heights_ahead, pull_at
+    float rise = 0, bend = 0, pull = 0;  ///< of that time: see Field::heights_ahead, pull_at
     float* scratch = nullptr;  ///< as large as the field's heights
 
     /// Horizontal velocity of the water; u_z is taken as zero (section 6.3).
@@ -26,7 +26,7 @@ struct SurfaceView {
         if (!field) return v;
         const float x = p.x * cells_per_metre, y = p.y * cells_per_metre;
         field->velocity_at(origin, x, y, v.x, v.y);
-        if (ahead > 0) {
+        if (pull > 0) {
             Vec3f more;
             field->pull_at(origin, x, y, pull, more.x, more.y);
             v += more;

@@ -12,6 +12,7 @@ Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
 
 void Water::set_height(const float* height) {
     field.set_heights(height);
+    starts_ = true;
     next_snapshot_ = 0;
 }
 

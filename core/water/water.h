@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory_resource>
+#include <utility>
 #include <vector>
 
 #include "core/water/field.h"
@@ -24,6 +25,9 @@ public:
     SnapshotExchange snapshots;
 
     void set_height(const float* height);
+    /// True once after set_height: the next step starts from rest.
+    bool take_start() { return std::exchange(starts_, false); }
+    bool starts() const { return starts_; }
     /// Null takes the pressure away.
     void set_pressure(const float* pressure);
     /// Null while the host presses nowhere.
@@ -42,7 +46,7 @@ public:
 private:
     WaterDef def_;
     double next_snapshot_ = 0;
-    bool pressed_ = false;
+    bool pressed_ = false, starts_ = false;
     std::pmr::vector<float> pressure_, scratch_;
 };
 

@@ -15,6 +15,7 @@ void hash_water(StateHash& hash, const Water& water) {
     hash.value(f.order);
     hash.value(water.def().centre_x);
     hash.value(water.def().centre_y);
+    hash.value(static_cast<std::uint32_t>(water.starts()));
     water.field.hash(hash);
     if (water.pressure()) hash.words(water.pressure(), water.field.cells());
 }
@@ -48,6 +49,7 @@ std::uint64_t World::hash() const {
     hash.value(ticks_);
     hash.value(time_);
     hash.value(behind_);
+    hash.value(last_step_);
     if (water_) hash_water(hash, *water_);
     for (const auto& body : bodies_) hash_body(hash, *body);
     return hash.result();

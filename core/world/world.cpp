@@ -34,7 +34,7 @@ Water& World::create_water(const WaterDef& def) {
     WaterDef with = def;
     with.field.skip_calm_tiles &= (def_.skip & skip_calm_water) != 0;
     water_ = std::allocate_shared<Water>(std::pmr::polymorphic_allocator<Water>(memory_), with, memory_);
-    behind_ = 0;
+    behind_ = last_step_ = 0;
     try {
         for (const auto& body : bodies_) give_footprint(*body);
         if (observer_) observer_->water_created(*this);
@@ -55,7 +55,7 @@ void World::destroy_water() {
 
 void World::set_height(const float* height) {
     water_->set_height(height);
-    behind_ = 0;
+    behind_ = last_step_ = 0;
     water_->offer_snapshot(ticks_, time_);
     if (observer_) observer_->height_set(*this, height, water_->field.cells());
 }
@@ -99,7 +99,7 @@ void World::set_motion(Body& body, const Pose& pose, const Twist& twist) {
     if (observer_) observer_->motion_set(*this, body);
 }
 
-SurfaceView World::view_from(const Body& body) const {
+SurfaceView World::view_from(const Body& body, float dt) const {
     SurfaceView view;
     view.everywhere = def_.everywhere;
     view.level = static_cast<float>(def_.level - body.def.pose.position.z);
@@ -112,7 +112,10 @@ SurfaceView World::view_from(const Body& body) const {
         view.cells_per_metre = 1.0f / field.cell;
         view.ahead = behind_;
         view.rise = behind_ * field.depth / field.cell;
-        view.pull = behind_ * def_.fluid.gravity / field.cell;
+        view.bend =
+            0.5f * behind_ * (behind_ + last_step_) * def_.fluid.gravity * field.depth / (field.cell * field.cell);
+        // The field's velocities are half a step older than its heights; where no tick waits, half a tick.
+        view.pull = std::max(0.0f, behind_ + 0.5f * (last_step_ - dt)) * def_.fluid.gravity / field.cell;
         view.scratch = water_->scratch();
         const Vec3f centre = body.rotation.to_world(body.centre()) * view.cells_per_metre;
         const auto reach = static_cast<std::int32_t>(std::min(body.radius() * view.cells_per_metre, 1e6f)) + 2;
@@ -144,8 +147,8 @@ World::WaveTime World::time_waves(float dt) const {
         throw Error(FRM_ERROR_LIMIT,
                     "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
                     static_cast<double>(dt), static_cast<double>(needed), max_substeps);
-    if (def_.skip & skip_wave_steps && displaces && time + dt <= stable) return {time, 0};
-    return {time, std::max(1u, static_cast<std::uint32_t>(needed))};
+    if (def_.skip & skip_wave_steps && displaces && time + dt <= stable) return {time, 0, true};
+    return {time, std::max(1u, static_cast<std::uint32_t>(needed)), behind_ > 0};
 }
 
 void World::tick_body(Body& body, float dt, float time_budget, bool water_waits) {
@@ -157,7 +160,7 @@ void World::tick_body(Body& body, float dt, float time_budget, bool water_waits)
         sum_forces(body, def_.fluid);
         return;
     }
-    SurfaceView view = view_from(body);
+    SurfaceView view = view_from(body, dt);
     view.waits = water_waits;
     const bool spread = (def_.model & model_displacement) != 0;
     bool deep = false;
@@ -208,13 +211,16 @@ bool World::tick(float dt) {
         }
     }
     behind_ = waits ? waves.time : 0.0f;
+    if (!waits && water_) last_step_ = waves.waited ? waves.time / static_cast<float>(waves.steps) : 0.0f;
     if (water_ && !waits) move_water(waves.time, waves.steps);
     if (diverged && water_) calm_water();
 
     ++ticks_;
     time_ += static_cast<double>(dt);
+    // A copy of the water is made while it waits, if it ever does: not in the tick that steps it.
+    const bool offers = waits || substeps_ > 0 || ticks_ == 1;
     substeps_ = waves.steps;
-    if (water_) water_->offer_snapshot(ticks_, time_ - static_cast<double>(behind_));
+    if (water_ && offers) water_->offer_snapshot(ticks_, time_ - static_cast<double>(behind_));
     if (observer_) observer_->ticked(*this, dt);
     return !diverged;
 }
@@ -228,6 +234,7 @@ void World::move_water(float dt, std::uint32_t substeps) {
     Field& field = water_->field;
     const float step = dt / static_cast<float>(substeps), push = step / def_.fluid.density;
     const Rect all{0, 0, field.def().nx, field.def().ny};
+    if (water_->take_start()) field.start_from_rest(step, def_.fluid.gravity);
     const bool displaces = (def_.model & model_displacement) != 0;
     if (displaces)
         for (const auto& body : bodies_) displace_water(*body->footprint, field);

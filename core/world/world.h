@@ -84,9 +84,10 @@ private:
     struct WaveTime {
         float time = 0;
         std::uint32_t steps = 0;
+        bool waited = false;  ///< in ticks before
     };
     WaveTime time_waves(float dt) const;
-    SurfaceView view_from(const Body& body) const;
+    SurfaceView view_from(const Body& body, float dt) const;
     bool cannot_be_wet(const Body& body) const;
     void tick_body(Body& body, float dt, float time_budget, bool water_waits);
     void give_footprint(Body& body);
@@ -102,7 +103,7 @@ private:
     WorldObserver* observer_ = nullptr;
     std::uint64_t ticks_ = 0;
     double time_ = 0;
-    float behind_ = 0;
+    float behind_ = 0, last_step_ = 0;  ///< s
     Skipped skipped_;
     std::uint32_t substeps_ = 0, next_body_ = 0;
 };
