@@ -33,7 +33,10 @@ TickTimes measure_ticks(const std::vector<std::uint8_t>& map_file, const TickSce
                         std::size_t ticks) {
     const Session session;
     frm_world world = 0;
-    session.check(frm_world_create(session.context(), nullptr, &world));
+    frm_world_def world_def;
+    session.check(frm_world_def_init(&world_def, sizeof world_def));
+    if (!scene.waits) world_def.skip &= ~static_cast<std::uint32_t>(FRM_SKIP_WAVE_STEPS);
+    session.check(frm_world_create(session.context(), &world_def, &world));
     if (scene.cells > 0) {
         frm_water_def water_def;
         session.check(frm_water_def_init(&water_def, sizeof water_def));

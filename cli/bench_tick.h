@@ -16,6 +16,7 @@ struct TickScene {
     std::uint32_t bodies = 1;   ///< half in the water, moving and turning
     std::uint32_t dry = 0;      ///< more bodies, 10 m above it
     double height = 0;          ///< of the bodies' origin, m
+    bool waits = true;          ///< several ticks may share a wave step (FRM_SKIP_WAVE_STEPS)
     bool moving = true;         ///< else they rest
 };
 
