@@ -316,15 +316,15 @@ typedef enum frm_skip {
     FRM_SKIP_WET_BODIES = 8,
     /* Waves where the water is calm, in tiles of 32 x 32 cells: lower than a millionth of the depth, or of 20 cells. */
     FRM_SKIP_CALM_WATER = 16,
-    /* Wave steps shorter than need be: ticks share one, as long as is stable. Between steps heights and velocities go on
-     * by Eqs. 7 and 8. Buoyancy and resistance in waves of 32 cells: 1.5 % after a second, most of it because waves run at
-     * slightly other speeds with other steps. Not with forced velocity (without FRM_MODEL_DISPLACEMENT). */
+    /* Wave steps shorter than need be: ticks share one, as long as is stable. Between steps heights and velocities go
+     * on by Eqs. 7 and 8. Buoyancy and resistance in waves of 32 cells: 1.5 % after a second, most of it because waves
+     * run at slightly other speeds with other steps. Not with forced velocity (without FRM_MODEL_DISPLACEMENT). */
     FRM_SKIP_WAVE_STEPS = 32,
     /* What a body does to the water where less than a hundredth of it would be seen at the surface: deeper than 38
      * cells. */
     FRM_SKIP_DEEP_BODIES = 64,
-    /* Laying out anew the volume of a body that has moved less than a thousandth of a cell since: its displaced volume is
-     * off by less than that times the area of its waterline. */
+    /* Laying out anew the volume of a body that has moved less than a thousandth of a cell since: its displaced volume
+     * is off by less than that times the area of its waterline. */
     FRM_SKIP_STILL_BODIES = 128,
     FRM_SKIP_DEFAULT = 255
 } frm_skip;
