@@ -109,3 +109,61 @@ TEST_CASE("the work that a pressure does on a closed basin is the energy that it
     CHECK(work > 0.01);
     CHECK(gained == Approx(work).epsilon(0.001));
 }
+
+// What a body displaces lifts water against its own head: with dT of thickness added to h, rho g dT (h + dT / 2), and half
+// of that h as it was a step before, because velocities lie between. What it presses is p dV, as above.
+TEST_CASE("the work that a body does on a closed basin is the energy that its waves gain", "[stroke]") {
+    const std::int32_t n = 96;
+    const double area = 0.05 * 0.05, weight = static_cast<double>(density) * static_cast<double>(gravity);
+    World world = test::world_of();
+    Water& water = world.create_water(test::water_of(n, 0.05f, 0.5f, Border::reflecting));
+    Body& body =
+        world.create_body(body_of(test::map_of(test::fine_box({0.4, 0.3, 0.1}, 0.05), 18, 2, 16), {0.3, -0.2, 0}));
+    const auto size = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    const auto place = [&](const float* window, std::vector<float>& out) {
+        const Footprint& f = *body.footprint;
+        std::fill(out.begin(), out.end(), 0.0f);
+        for (std::int32_t j = 0; j < f.size(); ++j)
+            for (std::int32_t i = 0; i < f.size(); ++i) {
+                const std::int32_t wi = i + f.i0(), wj = j + f.j0();
+                const float value = window[j * f.size() + i];
+                if (wi >= 0 && wj >= 0 && wi < n && wj < n) out[static_cast<std::size_t>(wj * n + wi)] = value;
+            }
+    };
+    std::vector<float> height(size), next(size), thickness(size), thicker(size), pressure(size), pressed(size);
+    std::vector<double> displaced(size, 0.0), rise(size, 0.0);
+    world.tick(0.004f);
+    place(body.footprint->thickness_before_row(0), thickness);
+    double lifted = 0, pushed = 0;
+    for (int t = 0; t < 1000; ++t) {
+        const double phase = 0.004 * t, level = phase < 3 ? std::pow(std::sin(M_PI * phase / 3), 2) : 0.0;
+        const auto heave = static_cast<float>(0.03 * level * std::sin(9 * phase));
+        const float speed = t < 750 ? 0.3f * static_cast<float>(level * std::cos(9 * phase)) : 0.0f;
+        world.set_motion(body, {{0.3, -0.2, heave}, test::turned({1, 0, 0}, 2 * static_cast<double>(heave))},
+                         {{0, 0, speed}, {}});
+        water.field.copy_heights(height.data());
+        world.tick(0.004f);
+        water.field.copy_heights(next.data());
+        place(body.footprint->thickness_before_row(0), thicker);
+        place(body.footprint->pressure(), pressed);
+        for (std::size_t k = 0; k < size; ++k) {
+            pushed += 0.5 * static_cast<double>(pressure[k] + pressed[k]) * rise[k] * area;
+            const double h = static_cast<double>(height[k]),
+                         dt = static_cast<double>(thicker[k]) - static_cast<double>(thickness[k]);
+            lifted += weight * area * dt * 0.5 * (h + dt + (t > 0 ? displaced[k] : h));
+            displaced[k] = h + dt;
+            rise[k] = static_cast<double>(next[k]) - displaced[k];
+        }
+        std::swap(thickness, thicker);
+        std::swap(pressure, pressed);
+    }
+    REQUIRE(water.field.level() == 0);
+    water.field.copy_heights(height.data());
+    const std::vector<float> before = velocities(water.field);
+    world.tick(0.004f);
+    const double gained = energy(water.field, height, before, velocities(water.field));
+    INFO("lifted " << lifted << " J, pushed " << pushed << " J, gained " << gained << " J");
+    CHECK(lifted > 0.01);
+    CHECK(pushed != 0);
+    CHECK(gained == Approx(lifted + pushed).epsilon(0.001));
+}
