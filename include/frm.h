@@ -308,19 +308,19 @@ typedef enum frm_skip {
     FRM_SKIP_FRICTION = 1,
     /* The fluctuation of sources that hardly fluctuate, their mean alone: below 2e-6 of the largest force. */
     FRM_SKIP_STEADY = 2,
-    /* All but the weight of a body that hangs higher above the calm surface than the water is deep (waves of linear
-     * theory are lower), and whose own waves have died down. Exact. */
+    /* All but the weight of a body that hangs higher above the calm surface than the water is deep (while no wave is as
+     * high), and whose own waves have died down. Exact. */
     FRM_SKIP_DRY_BODIES = 4,
     /* The walk over the surface of a body that is wholly under calm water: one evaluation by its moments. 1e-5 of the
      * weight of the water that it displaces. */
     FRM_SKIP_WET_BODIES = 8,
     /* Waves where the water is calm, in tiles of 32 x 32 cells: lower than a millionth of the depth, or of 20 cells. */
     FRM_SKIP_CALM_WATER = 16,
-    /* Wave steps shorter than need be: ticks share one, as long as is stable. Between steps heights and velocities go
-     * on by Eqs. 7 and 8. Buoyancy and resistance in waves of 32 cells: 1.5 % after a second, most of it because waves
-     * run at slightly other speeds with other steps. Not with forced velocity (without FRM_MODEL_DISPLACEMENT). */
+    /* Wave steps shorter than a quarter of the stable one, and than 5 ms: ticks share one. Between steps heights and
+     * velocities go on by Eqs. 7 and 8, and what bodies displace rises at once. 0.1 % of buoyancy and resistance in
+     * waves of 32 cells. Not with forced velocity (without FRM_MODEL_DISPLACEMENT). */
     FRM_SKIP_WAVE_STEPS = 32,
-    /* What a body does to the water where less than a hundredth of it would be seen at the surface: deeper than 38
+    /* What a body does to the water where less than a thousandth of it would be seen at the surface: deeper than 121
      * cells. */
     FRM_SKIP_DEEP_BODIES = 64,
     /* Laying out anew the volume of a body that has moved less than a thousandth of a cell since: its displaced volume
@@ -345,9 +345,10 @@ typedef struct frm_world_def {
     double level;      /* height of the calm surface, m; default 0 */
     uint32_t skip;     /* frm_skip; default FRM_SKIP_DEFAULT */
     float error_budget; /* N, 0 to 1e9: what a body's resistance may be off for the sake of speed. The coarsest clusters
-                           of sources are looked up whose bound is within it. Default 0: every source */
-    float time_budget; /* us, 0 to 1e6: what the resistance of all bodies may take, by a fixed price a lookup (so that
-                          the bits are the same anywhere). Clusters are made coarser until it is met, at any error.
+                           of sources are looked up whose bound is within it; every source of a body that pushes the
+                           water or is in water that moves. Default 0: every source, always */
+    float time_budget; /* us, 0 to 1e6: what the resistance of all such bodies may take, by a fixed price a lookup (so
+                          that the bits are the same anywhere). Clusters are made coarser until it is met, at any error.
                           Default 0: as long as it takes */
     uint32_t reserved;
 } frm_world_def;
@@ -454,7 +455,7 @@ FRM_API frm_status FRM_CALL frm_water_destroy(frm_water water);
 /* The water's size, as made. [owner] */
 FRM_API frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def *def);
 
-/* The field as it is now. FRM_ERROR_CAPACITY if capacity < nx * ny while an array is not null. [realtime] */
+/* The field as of its last step (FRM_SKIP_WAVE_STEPS: 5 ms ago at most; time says). FRM_ERROR_CAPACITY if capacity < nx * ny while an array is not null. [realtime] */
 FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *state);
 
 /* The newest snapshot, while another thread ticks: as frm_water_read, made every snapshot_interval of the world's time

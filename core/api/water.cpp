@@ -132,7 +132,7 @@ frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def* def) {
 frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state* state) {
     return with<WaterObject>(water, [&](Context&, WaterObject& object) {
         frm_water_state out = checked(state, object.water());
-        out.tick = object.world.world.ticks();
+        out.tick = object.world.world.water_stepped_at();
         out.time = object.world.world.time() - static_cast<double>(object.world.world.water_behind());
         copy_to_centres(object.water().field, out.height, out.velocity_x, out.velocity_y);
         write_struct(state, out);

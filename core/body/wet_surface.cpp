@@ -30,7 +30,10 @@ HeightGrid heights_of(const SurfaceView& surface, const Under& under) {
     const Field& field = *surface.field;
     const float* heights = field.height_row(0);
     if (surface.ahead > 0) {
-        field.heights_ahead(under.cells, surface.rise, surface.bend, surface.scratch);
+        // Clusters are sampled a little beyond the body's box too.
+        const Rect& c = under.cells;
+        const std::int32_t x = (c.i1 - c.i0) / 4 + 2, y = (c.j1 - c.j0) / 4 + 2;
+        field.heights_ahead({c.i0 - x, c.j0 - y, c.i1 + x, c.j1 + y}, surface.rise, surface.bend, surface.scratch);
         heights = surface.scratch;
     }
     return {heights, field.stride(), field.def().nx, field.def().ny, field.level()};
@@ -215,6 +218,7 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     const Map& map = *body.def.map;
     const float scale = body.def.scale, inverse = 1 / scale;
     body.water_finite = true;
+    body.by_one_evaluation = false;
     if (surface.everywhere) {
         set_sources(body, 1);
         body.wetness = Wetness::whole;

@@ -71,6 +71,7 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
 
     const Rect r = inside_water(footprint, water, {wet.i0, wet.j0, wet.i1 + 1, wet.j1 + 1});
     water.wake(r.moved(footprint.i0(), footprint.j0()));
+    footprint.own.wake(r);
     for (std::int32_t j = r.j0; j < r.j1; ++j) {
         for (std::int32_t i = r.i0; i < r.i1; ++i) {
             const std::int32_t wi = i + footprint.i0(), wj = j + footprint.j0();

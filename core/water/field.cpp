@@ -99,9 +99,10 @@ void Field::velocity_at(const GridOrigin& o, float x, float y, float& u, float& 
 }
 
 void Field::pull_at(const GridOrigin& o, float x, float y, float pull, float& u, float& v) const {
-    const std::int32_t fx = whole_below(o.x + x), fy = whole_below(o.y + y), i = o.i + fx, j = o.j + fy;
+    const std::int32_t fx = whole_below(o.x + x), fy = whole_below(o.y + y);
     u = v = 0;
-    if (i < 1 || j < 1 || i > def_.nx - 2 || j > def_.ny - 2) return;
+    if (o.i + fx < 0 || o.j + fy < 0 || o.i + fx >= def_.nx || o.j + fy >= def_.ny) return;
+    const std::int32_t i = std::clamp(o.i + fx, 1, def_.nx - 2), j = std::clamp(o.j + fy, 1, def_.ny - 2);
     // The slopes at the faces around, as those of velocity_at without its interpolation across them.
     const float s = o.x + x - static_cast<float>(fx), t = o.y + y - static_cast<float>(fy);
     const float *below = height_row(j - 1) + i, *h = height_row(j) + i, *above = height_row(j + 1) + i;
@@ -155,6 +156,7 @@ void Field::start_from_rest(float dt, float gravity) {
 
 void Field::calm() {
     std::fill(memory_.begin(), memory_.end(), 0.0f);
+    high_ = false;
     level_ = 0;
     tiles_.sleep_all();
 }

@@ -88,6 +88,8 @@ public:
 
     /// To be told before anything is written into cells or their faces through the rows above.
     void wake(const Rect& cells) { tiles_.wake(cells); }
+    /// Somewhere the water stands higher than it is deep: looked at every eight steps.
+    bool has_high_waves() const { return high_; }
     /// All is at rest in these cells.
     bool rests(const Rect& cells) const { return tiles_.rest(cells); }
     /// Cells that a step goes through.
@@ -115,6 +117,7 @@ private:
     friend class WaveStep;
 
     void look_for_calm(float gravity);
+    void look_for_high_waves(std::uint32_t steps);
 
     FieldDef def_;
     std::ptrdiff_t stride_;
@@ -128,6 +131,8 @@ private:
     CalmTiles tiles_;
     std::size_t together_from_ = std::size_t{1} << 21;
     double level_ = 0;
+    std::uint32_t steps_unseen_ = 0;
+    bool high_ = false;
 };
 
 /// Moves the contents of an nx by ny array by whole cells, zero where nothing was; `stride` floats a row.

@@ -22,6 +22,7 @@ FieldDef window_of(const FieldDef& water, float radius) {
     def.nx = def.ny = 2 * ((half + alignment - 1) / alignment) * alignment;
     def.border = Border::absorbing;
     def.border_cells = 0;
+    def.skip_calm_tiles = true;  // a window without waves costs nothing
     // What is taken off the water's velocity may be off by that of such a wave: 1e-4 m/s in half a metre of water.
     def.calm = 5e-5f * std::min(water.depth, 20 * water.cell);
     return def;
@@ -167,6 +168,8 @@ void Footprint::hash(StateHash& hash) const {
     hash.value(j0_);
     hash.value(rest_before_);
     hash.value(first_volume_);
+    hash.value(volume_);
+    hash.value(static_cast<std::uint32_t>(first));
     hash.words(thickness_before_.data(), thickness_before_.size());
     if (active_) own.hash(hash);
 }

@@ -38,7 +38,7 @@ public:
     /// So deep that of what is pushed or displaced `shallowest` under the calm surface, m, less than `deep_share` is seen
     /// at the surface.
     bool is_deep(float shallowest) const;
-    static constexpr float deep_share = 0.01f;
+    static constexpr float deep_share = 0.001f;
     /// Instead of deposits: the thickness is still that of the tick before.
     void keep();
 
@@ -70,8 +70,6 @@ public:
     const float* pressure() const { return pressure_.data(); }
     GridOrigin body_in_window() const;
 
-    /// In a tick in which the water waits: only where the body is.
-    void follow(const GridOrigin& body) { body_ = body; }
     /// Ends a tick: this tick's thickness is the next one's thickness before.
     void end();
     void hash(StateHash& hash) const;

@@ -7,7 +7,10 @@
 namespace frm {
 
 Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
-    : field(def.field, memory), snapshots(field.cells(), memory), def_(def), pressure_(field.cells(), 0.0f, memory),
+    : field(def.field, memory),
+      snapshots(field.cells(), memory),
+      def_(def),
+      pressure_(field.cells(), 0.0f, memory),
       scratch_(static_cast<std::size_t>(field.stride() * def.field.ny), 0.0f, memory) {}
 
 void Water::set_height(const float* height) {

@@ -310,6 +310,18 @@ void Field::look_for_calm(float gravity) {
         });
 }
 
+void Field::look_for_high_waves(std::uint32_t steps) {
+    steps_unseen_ += steps;
+    if (steps_unseen_ < CalmTiles::interval) return;
+    steps_unseen_ = 0;
+    high_ = false;
+    const float limit = def_.depth - std::fabs(level());
+    for (const Block& block : tiles_.blocks())
+        for (const Span* s = block.begin; s != block.end && !high_; ++s)
+            high_ =
+                kernels().any_above(height_row(block.r0) + s->i0, stride_, block.r1 - block.r0, s->i1 - s->i0, limit);
+}
+
 void Field::advance(float dt, float gravity, std::uint32_t steps, const Push* pushes, std::size_t push_count,
                     std::uint32_t threads) {
     for (std::size_t k = 0; k < push_count; ++k) {
@@ -329,6 +341,7 @@ void Field::advance(float dt, float gravity, std::uint32_t steps, const Push* pu
             step.together(now);
         tiles_.count(now);
         if (tiles_.due()) look_for_calm(gravity);
+        look_for_high_waves(now);
         steps -= now;
     }
 }

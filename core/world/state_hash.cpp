@@ -32,6 +32,10 @@ void hash_body(StateHash& hash, const Body& body) {
     hash.value(body.forces);
     for (const SourceState& source : body.sources) hash.value(source.map_time);
     if (body.map_time_owed > 0) hash.value(body.map_time_owed);
+    hash.value(body.laid_at);
+    hash.value(body.laid_rotation.row0);
+    hash.value(body.laid_rotation.row1);
+    hash.value(body.laid_rotation.row2);
     if (body.footprint) body.footprint->hash(hash);
 }
 

@@ -9,6 +9,10 @@
 namespace frm {
 namespace {
 
+/// Of the stable step, and s: what water may wait for. A floating box in a closed basin was driven by its own wave, when
+/// that spread later than with a half of the stable step; a picture of the water must not stutter.
+constexpr float longest_wait = 0.25f, longest_wait_time = 5e-3f;
+
 bool finite(const Forces& f) {
     const Vec3f sum = f.total.force + f.total.torque;  // of parts: one that is not finite shows
     return std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z);
@@ -17,6 +21,8 @@ bool finite(const Forces& f) {
 void forget_forces(Body& body) {
     body.forces = {};
     body.displaced_volume = body.wet_area = body.relative_speed = 0;
+    body.wet_sources = body.clipped_triangles = 0;
+    body.by_one_evaluation = false;
     for (SourceState& source : body.sources) source = {};
     body.wetness = Wetness::unknown;
     body.streams.forget();
@@ -55,12 +61,19 @@ void World::destroy_water() {
 
 void World::set_height(const float* height) {
     water_->set_height(height);
+    for (const auto& body : bodies_) body->footprint->own.calm();
     behind_ = last_step_ = 0;
+    stepped_at_ = ticks_;
     water_->offer_snapshot(ticks_, time_);
     if (observer_) observer_->height_set(*this, height, water_->field.cells());
 }
 
 void World::set_pressure(const float* pressure) {
+    if (behind_ > 0) {  // with the pressure as it was
+        step_waves({behind_, 1, true});
+        last_step_ = behind_;
+        behind_ = 0;
+    }
     water_->set_pressure(pressure);
     if (observer_) observer_->pressure_set(*this, pressure, pressure ? water_->field.cells() : 0);
 }
@@ -128,11 +141,13 @@ SurfaceView World::view_from(const Body& body, float dt) const {
     return view;
 }
 
-// Linear waves are not higher than the water is deep.
+// Over water a body is dry where it hangs higher than the water is deep, unless a wave is known to be as high.
 bool World::cannot_be_wet(const Body& body) const {
+    if (def_.everywhere) return false;
     const float centre = dot(body.rotation.row2, body.centre());
     const double low = body.def.pose.position.z + static_cast<double>(centre - body.radius()) - def_.level;
-    return !def_.everywhere && low > (water_ ? static_cast<double>(water_->def().field.depth) : 0.0);
+    if (!water_) return low > 0;
+    return low > static_cast<double>(water_->def().field.depth) && !water_->field.has_high_waves();
 }
 
 World::WaveTime World::time_waves(float dt) const {
@@ -147,7 +162,8 @@ World::WaveTime World::time_waves(float dt) const {
         throw Error(FRM_ERROR_LIMIT,
                     "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
                     static_cast<double>(dt), static_cast<double>(needed), max_substeps);
-    if (def_.skip & skip_wave_steps && displaces && time + dt <= stable) return {time, 0, true};
+    if (def_.skip & skip_wave_steps && displaces && time + dt <= std::min(longest_wait * stable, longest_wait_time))
+        return {time, 0, true};
     return {time, std::max(1u, static_cast<std::uint32_t>(needed)), behind_ > 0};
 }
 
@@ -157,6 +173,7 @@ void World::tick_body(Body& body, float dt, float time_budget, bool water_waits)
         body.wetness == Wetness::dry && (!body.footprint || (!body.footprint->first && !body.footprint->active()));
     if (settled && def_.skip & skip_dry_bodies && cannot_be_wet(body)) {
         ++skipped_.dry_bodies;
+        body.streams.rotation = body.rotation;
         sum_forces(body, def_.fluid);
         return;
     }
@@ -167,18 +184,14 @@ void World::tick_body(Body& body, float dt, float time_budget, bool water_waits)
     if (body.footprint) {
         deep = spread && def_.skip & skip_deep_bodies &&
                body.footprint->is_deep(view.level - dot(body.rotation.row2, body.centre()) - body.radius());
-        if (water_waits) {
-            body.footprint->follow(view.origin);
-        } else {
-            const Vec3f centre = body.rotation.to_world(body.centre());
-            const GridOrigin at = water_->origin_at(body.def.pose.position.x + static_cast<double>(centre.x),
-                                                    body.def.pose.position.y + static_cast<double>(centre.y));
-            body.footprint->begin(at.i, at.j, view.origin, spread ? &water_->field : nullptr);
-        }
+        const Vec3f centre = body.rotation.to_world(body.centre());
+        const GridOrigin at = water_->origin_at(body.def.pose.position.x + static_cast<double>(centre.x),
+                                                body.def.pose.position.y + static_cast<double>(centre.y));
+        body.footprint->begin(at.i, at.j, view.origin, spread ? &water_->field : nullptr);
     }
     body.pushes = !deep;
     measure_wet_surface(body, view, def_.fluid, def_.skip);
-    if (body.footprint && !water_waits) {
+    if (body.footprint) {
         if (deep)
             leave_displacement(body);
         else
@@ -212,7 +225,7 @@ bool World::tick(float dt) {
     }
     behind_ = waits ? waves.time : 0.0f;
     if (!waits && water_) last_step_ = waves.waited ? waves.time / static_cast<float>(waves.steps) : 0.0f;
-    if (water_ && !waits) move_water(waves.time, waves.steps);
+    if (water_) move_water(waves);
     if (diverged && water_) calm_water();
 
     ++ticks_;
@@ -220,7 +233,8 @@ bool World::tick(float dt) {
     // A copy of the water is made while it waits, if it ever does: not in the tick that steps it.
     const bool offers = waits || substeps_ > 0 || ticks_ == 1;
     substeps_ = waves.steps;
-    if (water_ && offers) water_->offer_snapshot(ticks_, time_ - static_cast<double>(behind_));
+    if (!waits) stepped_at_ = ticks_;
+    if (water_ && offers) water_->offer_snapshot(stepped_at_, time_ - static_cast<double>(behind_));
     if (observer_) observer_->ticked(*this, dt);
     return !diverged;
 }
@@ -230,35 +244,39 @@ void World::calm_water() {
     for (const auto& body : bodies_) body->footprint->own.calm();
 }
 
-void World::move_water(float dt, std::uint32_t substeps) {
+// What bodies displace rises at once, also where the water waits: a floating body whose own wave came a step late was
+// driven by it.
+void World::move_water(const WaveTime& waves) {
+    if (def_.model & model_displacement)
+        for (const auto& body : bodies_) displace_water(*body->footprint, water_->field);
+    if (waves.steps > 0) step_waves(waves);
+    for (const auto& body : bodies_) body->footprint->end();
+}
+
+void World::step_waves(const WaveTime& waves) {
     Field& field = water_->field;
-    const float step = dt / static_cast<float>(substeps), push = step / def_.fluid.density;
-    const Rect all{0, 0, field.def().nx, field.def().ny};
-    if (water_->take_start()) field.start_from_rest(step, def_.fluid.gravity);
-    const bool displaces = (def_.model & model_displacement) != 0;
-    if (displaces)
-        for (const auto& body : bodies_) displace_water(*body->footprint, field);
-    for (const auto& body : bodies_) body->footprint->gather_pressure();
+    const bool displaces = (def_.model & model_displacement) != 0, own_waves = (def_.model & model_own_waves) != 0;
+    const float step = waves.time / static_cast<float>(waves.steps), push = step / def_.fluid.density;
+    const float gravity = def_.fluid.gravity;
+    if (water_->take_start()) field.start_from_rest(step, gravity);
     pushes_.clear();
+    const Rect all{0, 0, field.def().nx, field.def().ny};
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
-    for (const auto& body : bodies_)
+    for (const auto& body : bodies_) {
+        body->footprint->gather_pressure();
         if (!body->footprint->pressed().empty()) pushes_.push_back(push_on_water(*body->footprint, push));
-    if (displaces) {
-        field.advance(step, def_.fluid.gravity, substeps, pushes_.data(), pushes_.size(), threads_);
-    } else {
-        // The velocity inside a body is the body's before each step.
-        for (std::uint32_t n = 0; n < substeps; ++n) {
+    }
+    // Where the velocity inside a body is forced, that is before each step.
+    for (std::uint32_t n = 0; n < (displaces ? 1 : waves.steps); ++n) {
+        const std::uint32_t steps = displaces ? waves.steps : 1;
+        if (!displaces)
             for (const auto& body : bodies_)
                 force_velocity(*body->footprint, field, body->def.twist.linear, body->def.twist.angular,
                                body->wet_height);
-            field.advance(step, def_.fluid.gravity, 1, pushes_.data(), pushes_.size(), threads_);
-            if (def_.model & model_own_waves)
-                for (const auto& body : bodies_) advance_own(*body->footprint, step, def_.fluid.gravity, 1, push);
-        }
+        field.advance(step, gravity, steps, pushes_.data(), pushes_.size(), threads_);
+        if (own_waves)
+            for (const auto& body : bodies_) advance_own(*body->footprint, step, gravity, steps, push);
     }
-    if (displaces && def_.model & model_own_waves)
-        for (const auto& body : bodies_) advance_own(*body->footprint, step, def_.fluid.gravity, substeps, push);
-    for (const auto& body : bodies_) body->footprint->end();
 }
 
 }  // namespace frm

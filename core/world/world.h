@@ -54,6 +54,8 @@ public:
     const Skipped& skipped() const { return skipped_; }
     /// How long ago the water was as its field is, s.
     float water_behind() const { return behind_; }
+    /// ticks() when it became so.
+    std::uint64_t water_stepped_at() const { return stepped_at_; }
     std::uint32_t bodies_created() const { return next_body_; }
 
     Water& create_water(const WaterDef& def);
@@ -91,7 +93,8 @@ private:
     bool cannot_be_wet(const Body& body) const;
     void tick_body(Body& body, float dt, float time_budget, bool water_waits);
     void give_footprint(Body& body);
-    void move_water(float dt, std::uint32_t substeps);
+    void move_water(const WaveTime& waves);
+    void step_waves(const WaveTime& waves);
     void calm_water();
 
     WorldDef def_;
@@ -101,7 +104,7 @@ private:
     std::pmr::vector<std::shared_ptr<Body>> bodies_;
     std::pmr::vector<Push> pushes_;  ///< of one tick; has room for all bodies
     WorldObserver* observer_ = nullptr;
-    std::uint64_t ticks_ = 0;
+    std::uint64_t ticks_ = 0, stepped_at_ = 0;
     double time_ = 0;
     float behind_ = 0, last_step_ = 0;  ///< s
     Skipped skipped_;
