@@ -455,7 +455,8 @@ FRM_API frm_status FRM_CALL frm_water_destroy(frm_water water);
 /* The water's size, as made. [owner] */
 FRM_API frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def *def);
 
-/* The field as of its last step (FRM_SKIP_WAVE_STEPS: 5 ms ago at most; time says). FRM_ERROR_CAPACITY if capacity < nx * ny while an array is not null. [realtime] */
+/* The field as of its last step (with FRM_SKIP_WAVE_STEPS up to 5 ms ago; time says). FRM_ERROR_CAPACITY if
+ * capacity < nx * ny while an array is not null. [realtime] */
 FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *state);
 
 /* The newest snapshot, while another thread ticks: as frm_water_read, made every snapshot_interval of the world's time
