@@ -420,7 +420,7 @@ typedef struct frm_water_def {
                               it smaller); default 0 */
     float cell;           /* edge of a cell, 1e-4 to 1e3 m; default 0.025 */
     float depth;          /* d of Eq. 8: mean water depth, 1e-3 to 1e4 m; default 0.5. Waves run at sqrt(g d) */
-    float snapshot_interval; /* seconds between snapshots, 0 (every tick) to 10; default 1/60 */
+    float snapshot_interval; /* seconds between snapshots, 0 (every step) to 10; default 1/60 */
     double centre_x;      /* of the field, on the first horizontal axis, m; default 0 */
     double centre_y;      /* on the second; default 0 */
     uint32_t order;       /* of the differences in space, 2 (default) or 4. A wave of 16 cells runs 0.6 % too slowly at

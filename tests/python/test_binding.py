@@ -298,7 +298,7 @@ def test_snapshots_from_another_thread(context):
     thread.join()
     assert not failures
     assert len(set(ticks)) > 5
-    assert water.read_snapshot().tick == world.stats().ticks
+    assert world.stats().ticks - 8 <= water.read_snapshot().tick <= world.stats().ticks  # of the water's last step
 
 
 def test_hash_tells_worlds_apart(context):
