@@ -33,10 +33,7 @@ TickTimes measure_ticks(const std::vector<std::uint8_t>& map_file, const TickSce
                         std::size_t ticks) {
     const Session session;
     frm_world world = 0;
-    frm_world_def world_def;
-    session.check(frm_world_def_init(&world_def, sizeof world_def));
-    if (!scene.waits) world_def.skip &= ~static_cast<std::uint32_t>(FRM_SKIP_WAVE_STEPS);
-    session.check(frm_world_create(session.context(), &world_def, &world));
+    session.check(frm_world_create(session.context(), nullptr, &world));
     if (scene.cells > 0) {
         frm_water_def water_def;
         session.check(frm_water_def_init(&water_def, sizeof water_def));
@@ -65,7 +62,7 @@ TickTimes measure_ticks(const std::vector<std::uint8_t>& map_file, const TickSce
     constexpr std::size_t warm = 50;
     for (std::size_t n = 0;
          n < 2 * warm || (n < ticks + warm && std::chrono::duration<double>(now() - begin).count() < seconds); ++n) {
-        const double phase = 0.004 * static_cast<double>(n), lean = 0.2 * std::sin(phase);
+        const double phase = 2 * scene.dt * static_cast<double>(n), lean = 0.2 * std::sin(phase);
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             // In a row across the water, so that none lies in another.
             const double y = 0.5 * (static_cast<double>(i) - 0.5 * static_cast<double>(bodies.size() - 1));
@@ -77,7 +74,7 @@ TickTimes measure_ticks(const std::vector<std::uint8_t>& map_file, const TickSce
             session.check(frm_body_set_motion(bodies[i], &pose, scene.moving ? &twist : nullptr));
         }
         const auto start = now();
-        session.check(frm_world_tick(world, 0.002f));
+        session.check(frm_world_tick(world, static_cast<float>(scene.dt)));
         const double us = std::chrono::duration<double, std::micro>(now() - start).count();
         if (n >= warm) times.add(us);
     }

@@ -16,11 +16,11 @@ struct TickScene {
     std::uint32_t bodies = 1;   ///< half in the water, moving and turning
     std::uint32_t dry = 0;      ///< more bodies, 10 m above it
     double height = 0;          ///< of the bodies' origin, m
-    bool waits = true;          ///< several ticks may share a wave step (FRM_SKIP_WAVE_STEPS)
+    double dt = 0.002;          ///< s of a tick
     bool moving = true;         ///< else they rest
 };
 
-/// Ticks of 2 ms: `ticks` of them, or as many as there is time for in `seconds` if those are fewer.
+/// Times `ticks` ticks, or as many as there is time for in `seconds` if those are fewer.
 TickTimes measure_ticks(const std::vector<std::uint8_t>& map_file, const TickScene& scene, double seconds,
                         std::size_t ticks = 1000000);
 
