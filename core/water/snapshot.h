@@ -29,9 +29,13 @@ public:
     /// [realtime] Skipped, with false, while readers hold every other slot.
     bool publish(const Field& field, std::uint64_t tick, double time);
 
+    /// Whether somebody has read since this was asked last.
+    bool take_read() { return read_.exchange(false); }
+
     /// [any] Calls `use(const WaterSnapshot&)` on the newest snapshot.
     template <typename Use>
     void read(Use&& use) {
+        read_.store(true);
         Slot& slot = acquire();
         use(static_cast<const WaterSnapshot&>(slot.snapshot));
         slot.readers.fetch_sub(1);
@@ -49,6 +53,7 @@ private:
 
     std::array<Slot, 4> slots_;
     std::atomic<std::uint32_t> newest_{0};
+    std::atomic<bool> read_{false};
 };
 
 /// Averages the face velocities to cell centres and copies the heights; arrays of field.cells() floats, each may be

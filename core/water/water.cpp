@@ -5,6 +5,12 @@
 #include <cstring>
 
 namespace frm {
+namespace {
+
+/// After so many seconds without a reader no snapshots are made: a copy costs as much as a tick (`frm bench`).
+constexpr double unread_time = 1;
+
+}  // namespace
 
 Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
     : field(def.field, memory),
@@ -26,6 +32,8 @@ void Water::set_pressure(const float* pressure) {
 
 void Water::offer_snapshot(std::uint64_t tick, double time) {
     if (time < next_snapshot_) return;
+    if (snapshots.take_read() || next_snapshot_ == 0) last_read_ = time;
+    if (time - last_read_ > unread_time) return;
     if (!snapshots.publish(field, tick, time)) return;
     next_snapshot_ = time + static_cast<double>(def_.snapshot_interval);
 }

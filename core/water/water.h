@@ -36,7 +36,7 @@ public:
     /// As many floats as the field's heights take, for whoever is at work on a tick (SurfaceView::scratch).
     float* scratch() { return scratch_.data(); }
 
-    /// Publishes a snapshot when the interval has passed.
+    /// Publishes a snapshot when the interval has passed and somebody reads them.
     void offer_snapshot(std::uint64_t tick, double time);
 
     /// Where a horizontal position lies in the grid. Positions more than a million cells outside are moved nearer: all
@@ -45,7 +45,7 @@ public:
 
 private:
     WaterDef def_;
-    double next_snapshot_ = 0;
+    double next_snapshot_ = 0, last_read_ = 0;
     bool pressed_ = false, starts_ = false;
     std::pmr::vector<float> pressure_, scratch_;
 };

@@ -52,3 +52,26 @@ TEST_CASE("face velocities are averaged to the cells' centres", "[snapshot]") {
     CHECK(v[2 * 8 + 5] == 1);
     CHECK(v[3 * 8 + 5] == 1);
 }
+
+TEST_CASE("snapshots are made while somebody reads them, and again when somebody does", "[snapshot]") {
+    World world = test::world_of();
+    Water& water = world.create_water(test::water_of(32, 0.05f, 0.5f, Border::reflecting, 0));
+    const auto newest = [&] {
+        std::uint64_t tick = 0;
+        water.snapshots.read([&](const WaterSnapshot& snapshot) { tick = snapshot.tick; });
+        return tick;
+    };
+    const auto run = [&](int ticks) {
+        for (int t = 0; t < ticks; ++t) world.tick(0.01f);
+    };
+    run(50);
+    CHECK(newest() >= 48);
+    run(90);
+    CHECK(newest() >= 138);
+    run(500);  // nobody reads for 5 s
+    const std::uint64_t last = newest();
+    CHECK(last >= 200);
+    CHECK(last <= 250);
+    run(1);
+    CHECK(newest() == 641);
+}
