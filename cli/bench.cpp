@@ -94,7 +94,7 @@ void parts(const Options& o, const std::vector<std::uint8_t>& large, Results& ou
     out.add("body_still_us", body.still, "us", "the same, of a body that has not moved");
     out.add("body_coupling_us", body.coupling, "us", "that into the water and its own waves");
 
-    const LookupTimes lookup = measure_lookup(o.seconds);
+    const LookupTimes lookup = measure_lookup(large, o.seconds);
     out.add("lookup_ns_per_source", lookup.source, "ns", "Eq. 6 and all around it for 40 sources of a stroke, each",
             15);
     out.add("lookup_scattered_ns", lookup.scattered, "ns", "the same, each tick in another direction");

@@ -83,16 +83,6 @@ BodyTimes measure_body(const std::vector<std::uint8_t>& map_file, double seconds
         begin();
         lay_displacement(body, static_cast<float>(-body.def.pose.position.z), true);
     };
-    t.dry = median_us(
-        seconds, [&](std::size_t n) { move(n, 10); },
-        [&] {
-            SurfaceView v = begin();
-            v.highest = 0.1f;
-            measure_wet_surface(body, v, fluid);
-            lay_displacement(body, v.level, true);
-            displace_water(*body.footprint, water.field);
-            body.footprint->end();
-        });
     t.displacement = median_us(
         seconds, [&](std::size_t n) { move(n, 0); }, [&] { lay(), body.footprint->end(); });
     t.coupling = median_us(

@@ -11,7 +11,6 @@ struct BodyTimes {
     double cut = 0;           ///< wet surface, half wet
     double wet = 0;           ///< wet surface, wholly wet under waves
     double calm = 0;          ///< wet surface, wholly wet under calm water
-    double dry = 0;           ///< a tick's part of it, above the water: footprint, wet surface, displacement
     double displacement = 0;  ///< laying the displaced volume, half wet
     double still = 0;         ///< the same, of a body that has not moved
     double coupling = 0;      ///< the change of the thickness into the water and the body's own waves

@@ -7,23 +7,13 @@
 #include <random>
 #include <vector>
 
-#include "bake/map/formula.h"
-#include "bake/regions/tessellate.h"
 #include "core/body/body.h"
+#include "core/map/codec.h"
 
 namespace frm::cli {
 namespace {
 
-constexpr std::uint32_t sources = 40;
 constexpr std::size_t batch = 512;  ///< ticks between two looks at the clock
-
-std::shared_ptr<const Map> paddle_map() {
-    bake::Surface box;
-    for (int i = 0; i < 8; ++i) box.vertices.emplace_back(i & 1 ? 0.1 : -0.1, i & 2 ? 0.01 : -0.01, i & 4 ? 0.3 : -0.3);
-    box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return std::make_shared<Map>(bake::formula_map(bake::tessellate(box, 1e-4, 500).surface, sources, 4, 128));
-}
 
 std::vector<Twist> stroke() {
     std::vector<Twist> out;
@@ -67,10 +57,13 @@ double measure(Body& body, const std::vector<Twist>& twists, double seconds) {
 
 }  // namespace
 
-LookupTimes measure_lookup(double seconds) {
+LookupTimes measure_lookup(const std::vector<std::uint8_t>& map_file, double seconds) {
+    const auto map = std::make_shared<Map>();
+    decode_map(map_file.data(), map_file.size(), *map);
     BodyDef def;
-    def.map = paddle_map();
+    def.map = map;
     Body body(def, 0, std::pmr::get_default_resource());
+    const auto sources = static_cast<double>(map->sources.size());
     LookupTimes out{};
     out.source = measure(body, stroke(), seconds) / sources;
     out.scattered = measure(body, scatter(), seconds) / sources;

@@ -233,7 +233,6 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     const Clusters& clusters = map.clusters;
     const Vec3f arm = body.rotation.to_world(clusters.centre * scale), &up = body.rotation.row2;
     const float centre_level = surface.level - arm.z, reach = clusters.radius * scale;
-    if (centre_level + surface.highest <= -reach) return set_dry(body);
     const float along_up[3] = {up.x, up.y, up.z};
     const float height = std::min(reach, support(along_up, clusters.half) * scale * (1 + 1e-6f));
     Range range;

@@ -10,7 +10,7 @@ namespace frm {
 constexpr std::size_t kernel_lanes = 16;
 constexpr std::size_t kernel_longest_row = 272;  ///< half of the largest window, and two
 
-/// Begins on a cache line. Kernels take T itself: gcc 12 does not vectorise loads from a type of larger alignment.
+/// Begins on a cache line; kernels take T itself.
 template <typename T>
 struct alignas(64) OnLines : T {};
 

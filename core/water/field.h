@@ -62,8 +62,6 @@ public:
     void advance(float dt, float gravity, std::uint32_t steps, const Push* pushes, std::size_t push_count,
                  std::uint32_t threads);
     void step(float dt, float gravity, std::uint32_t threads) { advance(dt, gravity, 1, nullptr, 0, threads); }
-    /// A step's push, at once.
-    void push(const Push& push);
 
     /// Bilinear; zero outside.
     float height_at(const GridOrigin& origin, float x, float y) const;
@@ -116,6 +114,8 @@ public:
 private:
     friend class WaveStep;
 
+    /// A step's push, at once.
+    void push(const Push& push);
     void look_for_calm(float gravity);
     void look_for_high_waves(std::uint32_t steps);
 

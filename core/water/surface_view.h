@@ -9,7 +9,6 @@ namespace frm {
 struct SurfaceView {
     bool everywhere = false;       ///< fluid without a surface: all is wet and nothing is buoyant
     float level = 0;               ///< of the calm surface above the body's origin, m
-    float highest = 3e38f;         ///< no wave stands higher above it, m: what is known without looking at the water
     const Field* field = nullptr;  ///< null: flat
     bool still = true;             ///< the water near the body is at rest
     GridOrigin origin;             ///< the body's origin in the field

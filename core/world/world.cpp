@@ -112,14 +112,20 @@ void World::set_motion(Body& body, const Pose& pose, const Twist& twist) {
     if (observer_) observer_->motion_set(*this, body);
 }
 
+bool World::rests_around(const Body& body, const SurfaceView& view) const {
+    const Vec3f centre = body.rotation.to_world(body.centre()) * view.cells_per_metre;
+    const auto reach = static_cast<std::int32_t>(std::min(body.radius() * view.cells_per_metre, 1e6f)) + 2;
+    const std::int32_t i = view.origin.i + static_cast<std::int32_t>(view.origin.x + std::clamp(centre.x, -1e6f, 1e6f)),
+                       j = view.origin.j + static_cast<std::int32_t>(view.origin.y + std::clamp(centre.y, -1e6f, 1e6f));
+    return water_->field.rests({i - reach, j - reach, i + reach, j + reach});
+}
+
 SurfaceView World::view_from(const Body& body, float dt) const {
     SurfaceView view;
     view.everywhere = def_.everywhere;
     view.level = static_cast<float>(def_.level - body.def.pose.position.z);
-    view.highest = 0;
     if (water_) {
         const FieldDef& field = water_->def().field;
-        view.highest = 3e38f;
         view.field = &water_->field;
         view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
         view.cells_per_metre = 1.0f / field.cell;
@@ -130,13 +136,7 @@ SurfaceView World::view_from(const Body& body, float dt) const {
         // The field's velocities are half a step older than its heights; where no tick waits, half a tick.
         view.pull = std::max(0.0f, behind_ + 0.5f * (last_step_ - dt)) * def_.fluid.gravity / field.cell;
         view.scratch = water_->scratch();
-        const Vec3f centre = body.rotation.to_world(body.centre()) * view.cells_per_metre;
-        const auto reach = static_cast<std::int32_t>(std::min(body.radius() * view.cells_per_metre, 1e6f)) + 2;
-        const std::int32_t i = view.origin.i +
-                               static_cast<std::int32_t>(view.origin.x + std::clamp(centre.x, -1e6f, 1e6f)),
-                           j = view.origin.j +
-                               static_cast<std::int32_t>(view.origin.y + std::clamp(centre.y, -1e6f, 1e6f));
-        view.still = water_->field.rests({i - reach, j - reach, i + reach, j + reach});
+        view.still = has_budget() && rests_around(body, view);
     }
     return view;
 }
@@ -209,10 +209,12 @@ void World::tick_body(Body& body, float dt, float time_budget, bool water_waits)
 bool World::tick(float dt) {
     const WaveTime waves = time_waves(dt);
     const bool waits = water_ && waves.steps == 0;
-    std::uint32_t wet = 0;
-    for (const auto& body : bodies_) wet += body->wet_sources > 0;
-    const float time_each =
-        def_.time_budget / static_cast<float>(std::max(1u, wet));  // by who was wet in the last tick
+    float time_each = 0;
+    if (def_.time_budget > 0) {
+        std::uint32_t wet = 0;  // in the last tick
+        for (const auto& body : bodies_) wet += body->wet_sources > 0;
+        time_each = def_.time_budget / static_cast<float>(std::max(1u, wet));
+    }
 
     bool diverged = false;
     skipped_ = {0, 0, 0, 0, 0, skipped_.water_waits + waits};

@@ -90,6 +90,8 @@ private:
     };
     WaveTime time_waves(float dt) const;
     SurfaceView view_from(const Body& body, float dt) const;
+    bool has_budget() const { return def_.error_budget > 0 || def_.time_budget > 0; }
+    bool rests_around(const Body& body, const SurfaceView& view) const;
     bool cannot_be_wet(const Body& body) const;
     void tick_body(Body& body, float dt, float time_budget, bool water_waits);
     void give_footprint(Body& body);
