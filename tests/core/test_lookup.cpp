@@ -6,11 +6,12 @@
 #include <random>
 
 #include "core/kernels/kernels.h"
-#include "core/map/lookup.h"
 #include "tests/support/catch.h"
+#include "tests/support/plain_lookup.h"
 #include "tests/support/worlds.h"
 
 using namespace frm;
+using namespace frm::test;
 
 TEST_CASE("at a baked direction and sample the lookup gives what was stored", "[lookup]") {
     const auto map = test::map_of(test::fine_box({0.2, 0.1, 0.3}, 0.1), 6, 2, 16);
