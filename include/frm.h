@@ -460,10 +460,10 @@ FRM_API frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def *de
 FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *state);
 
 /* The newest snapshot, while another thread ticks: as frm_water_read, made every snapshot_interval of the world's time
- * and when heights are set; older while three or more slow readers keep the other copies busy. A second after the
- * last read no more are made (a copy costs as much as a tick); the first read after that gives the last one made, and
- * has the next tick make another. Any number of readers; never waits for the ticking thread and never makes it wait.
- * [any] */
+ * and when heights are set; older while three or more slow readers keep the other copies busy. A copy costs as much
+ * as a tick, so the longer nobody reads the fewer are made: one is never older than the interval or an eighth of the
+ * time since the last read, and a read has the next tick make another. Any number of readers; never waits for the
+ * ticking thread and never makes it wait. [any] */
 FRM_API frm_status FRM_CALL frm_water_read_snapshot(frm_water water, frm_water_state *state);
 
 /* Sets heights (m, at cell centres, within +-depth) and lets the water rest. `count` must be nx * ny. [owner] */

@@ -30,7 +30,7 @@ public:
     bool publish(const Field& field, std::uint64_t tick, double time);
 
     /// Whether somebody has read since this was asked last.
-    bool take_read() { return read_.exchange(false); }
+    bool take_read() { return read_.load(std::memory_order_relaxed) && read_.exchange(false); }
 
     /// [any] Calls `use(const WaterSnapshot&)` on the newest snapshot.
     template <typename Use>

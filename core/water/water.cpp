@@ -7,8 +7,9 @@
 namespace frm {
 namespace {
 
-/// After so many seconds without a reader no snapshots are made: a copy costs as much as a tick (`frm bench`).
-constexpr double unread_time = 1;
+/// A copy costs as much as a tick (`frm bench`), so while nobody reads they are made ever more rarely: a snapshot is
+/// never older than the interval or this share of the time since the last read.
+constexpr double unread_share = 0.125;
 
 }  // namespace
 
@@ -22,7 +23,7 @@ Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
 void Water::set_height(const float* height) {
     field.set_heights(height);
     starts_ = true;
-    next_snapshot_ = 0;
+    published_ = false;
 }
 
 void Water::set_pressure(const float* pressure) {
@@ -30,12 +31,14 @@ void Water::set_pressure(const float* pressure) {
     if (pressed_) std::memcpy(pressure_.data(), pressure, pressure_.size() * sizeof(float));
 }
 
-void Water::offer_snapshot(std::uint64_t tick, double time) {
-    if (time < next_snapshot_) return;
-    if (snapshots.take_read() || next_snapshot_ == 0) last_read_ = time;
-    if (time - last_read_ > unread_time) return;
-    if (!snapshots.publish(field, tick, time)) return;
-    next_snapshot_ = time + static_cast<double>(def_.snapshot_interval);
+bool Water::offer_snapshot(std::uint64_t tick, double time) {
+    if (snapshots.take_read() || !published_) last_read_ = time;
+    const double interval = std::max(static_cast<double>(def_.snapshot_interval), unread_share * (time - last_read_));
+    if (published_ && time - last_snapshot_ < interval) return false;
+    if (!snapshots.publish(field, tick, time)) return false;
+    published_ = true;
+    last_snapshot_ = time;
+    return true;
 }
 
 GridOrigin Water::origin_at(double x, double y) const {

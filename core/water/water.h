@@ -36,8 +36,8 @@ public:
     /// As many floats as the field's heights take, for whoever is at work on a tick (SurfaceView::scratch).
     float* scratch() { return scratch_.data(); }
 
-    /// Publishes a snapshot when the interval has passed and somebody reads them.
-    void offer_snapshot(std::uint64_t tick, double time);
+    /// Publishes a snapshot when the interval has passed, or a longer one while nobody reads them; whether it did.
+    bool offer_snapshot(std::uint64_t tick, double time);
 
     /// Where a horizontal position lies in the grid. Positions more than a million cells outside are moved nearer: all
     /// is flat there.
@@ -45,8 +45,8 @@ public:
 
 private:
     WaterDef def_;
-    double next_snapshot_ = 0, last_read_ = 0;
-    bool pressed_ = false, starts_ = false;
+    double last_snapshot_ = 0, last_read_ = 0;  ///< s
+    bool published_ = false, pressed_ = false, starts_ = false;
     std::pmr::vector<float> pressure_, scratch_;
 };
 

@@ -53,7 +53,7 @@ TEST_CASE("face velocities are averaged to the cells' centres", "[snapshot]") {
     CHECK(v[3 * 8 + 5] == 1);
 }
 
-TEST_CASE("snapshots are made while somebody reads them, and again when somebody does", "[snapshot]") {
+TEST_CASE("snapshots become rare while nobody reads them, and a read brings the next", "[snapshot]") {
     World world = test::world_of();
     Water& water = world.create_water(test::water_of(32, 0.05f, 0.5f, Border::reflecting, 0));
     const auto newest = [&] {
@@ -61,17 +61,34 @@ TEST_CASE("snapshots are made while somebody reads them, and again when somebody
         water.snapshots.read([&](const WaterSnapshot& snapshot) { tick = snapshot.tick; });
         return tick;
     };
-    const auto run = [&](int ticks) {
-        for (int t = 0; t < ticks; ++t) world.tick(0.01f);
+    std::uint64_t ticks = 0;
+    const auto run = [&](int count) {
+        for (int t = 0; t < count; ++t) world.tick(0.01f);
+        ticks += static_cast<std::uint64_t>(count);
     };
-    run(50);
-    CHECK(newest() >= 48);
-    run(90);
-    CHECK(newest() >= 138);
-    run(500);  // nobody reads for 5 s
-    const std::uint64_t last = newest();
-    CHECK(last >= 200);
-    CHECK(last <= 250);
-    run(1);
-    CHECK(newest() == 641);
+    for (int read = 0; read < 10; ++read) {
+        run(10);
+        CHECK(newest() >= ticks - 2);
+    }
+    for (const int unread : {500, 5000, 50000}) {  // ticks nobody reads
+        CAPTURE(unread);
+        run(unread);
+        const std::uint64_t last = newest(), oldest = ticks - static_cast<std::uint64_t>(unread) / 8 - 1;
+        CHECK(last >= oldest);
+        CHECK(last < ticks);
+        run(1);
+        CHECK(newest() == ticks);
+    }
+}
+
+TEST_CASE("how many snapshots are made grows with the logarithm of the time nobody reads", "[snapshot]") {
+    Water water(test::water_of(32, 0.05f, 0.5f, Border::reflecting, 0), test::memory());
+    int made = 0, rounds = 0;
+    for (std::uint64_t tick = 0; tick < 1000000; ++tick) {
+        const bool is = water.offer_snapshot(tick, static_cast<double>(tick) * 0.002);
+        made += is, rounds += is && tick > 100000;
+    }
+    CHECK(made < 100);
+    CHECK(rounds >= 15);  // log(10) / log(8 / 7) = 17
+    CHECK(rounds <= 19);
 }
