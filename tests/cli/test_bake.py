@@ -119,7 +119,7 @@ def test_an_interrupted_flow_leaves_nothing(box, tmp_path, number):
         if "%, " in line:
             break
     process.send_signal(number)
-    out, err = process.communicate(timeout=20)
+    out, err = process.communicate(timeout=100)
     assert process.returncode == 1 and out == "" and "interrupted" in err
     assert names(tmp_path) == ["out"] and (tmp_path / "out").read_text() == "older"
 

@@ -45,7 +45,7 @@ def test_what_is_done_stays_and_the_same_command_goes_on(good, box, whole, tmp_p
     process = start(box, out, "--threads", "1")
     wait_for_flows(out, 2, process)
     process.send_signal(number)
-    said, error = process.communicate(timeout=20)
+    said, error = process.communicate(timeout=100)
     assert process.returncode != 0 and said == "" and not out.exists()
     kept = {path: path.stat().st_mtime_ns for path in flows(out)}
     assert 2 <= len(kept) < 6
@@ -70,7 +70,7 @@ def test_an_interrupt_before_the_first_flow_leaves_nothing(box, tmp_path):
         if "%, " in line:
             break
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=20)
+    out, err = process.communicate(timeout=100)
     assert process.returncode == 1 and out == "" and "interrupted; no flow was finished" in err
     assert names(tmp_path) == []
 

@@ -142,7 +142,7 @@ def interrupted(arguments, cwd):
         before, line = before + line, process.stderr.readline()
         assert line, before
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=200)
     return process.returncode, out, err, line
 
 

@@ -178,7 +178,7 @@ def test_an_interrupted_recording_is_kept(good, scene, tmp_path):
     line = process.stderr.readline()
     assert line.startswith("run: ") and "left" in line and "%" in line
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=20)
+    out, err = process.communicate(timeout=100)
     assert process.returncode == 1 and "interrupted after" in err
     j = good("replay", tmp_path / "r.frmrec", "--json").json
     assert j["identical"] and not j["torn"] and j["ticks"] == len(read_csv(tmp_path / "r.csv"))
@@ -190,7 +190,7 @@ def test_a_recording_whose_process_died_is_replayed_to_the_cut(good, scene, tmp_
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     process.stderr.readline()
     process.kill()
-    process.communicate(timeout=20)
+    process.communicate(timeout=100)
     j = good("replay", tmp_path / "r.frmrec.part", "--json").json
     assert j["torn"] and j["identical"] and j["ticks"] > 64
 
