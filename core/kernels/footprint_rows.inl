@@ -46,16 +46,39 @@ static void slice_elements(const ElementBlock* block, const SliceLevel* level, f
     }
 }
 
-/// One row of a grid from two of a grid of twice the cell: a quadratic spline in terms of the finer ones (weights 3/4 and
-/// 1/4; Chaikin 1974). near and far are the coarse rows from their cell `first` - 1 on, fine the row from cell 2 `first` - 1
-/// on; 2 count + 2 fine cells come from count + 2 coarse ones, of which the first and the last are empty.
-static void refine_row(float* __restrict fine, const float* __restrict near, const float* __restrict far,
-                       std::ptrdiff_t count) {
-    float row[kernel_longest_row];
-    for (std::ptrdiff_t i = 0; i < count + 2; ++i) row[i] = 0.75f * near[i] + 0.25f * far[i];
-    for (std::ptrdiff_t i = 0; i < count + 1; ++i) {
-        fine[2 * i] += 0.75f * row[i] + 0.25f * row[i + 1];
-        fine[2 * i + 1] += 0.75f * row[i + 1] + 0.25f * row[i];
+/// Twice as many columns: a quadratic spline in terms of one of half the cell (weights 3/4 and 1/4; Chaikin 1974).
+static void refine_columns(float* __restrict fine, const float* __restrict coarse, std::ptrdiff_t eights) {
+    for (; eights > 0; --eights, coarse += 8, fine += 16)
+        for (std::ptrdiff_t i = 0; i < 8; ++i) {
+            const float most = 0.75f * coarse[i];
+            fine[2 * i] = most + 0.25f * coarse[i - 1];
+            fine[2 * i + 1] = most + 0.25f * coarse[i + 1];
+        }
+}
+
+/// A grid, in whole eights of columns, added to one of half the cell. Rows before the first and after the last count as
+/// empty, and have one row of finer cells each; a column before and after is read.
+static void refine(float* fine, std::ptrdiff_t fine_stride, const float* coarse, std::ptrdiff_t stride,
+                   std::ptrdiff_t rows, std::ptrdiff_t eights) {
+    float buffer[3][2 * kernel_longest_row];
+    float *below = buffer[0], *here = buffer[1], *above = buffer[2];
+    const std::ptrdiff_t count = 16 * eights;
+    for (std::ptrdiff_t i = 0; i < count; ++i) below[i] = here[i] = 0;
+    refine_columns(above, coarse, eights);
+    for (std::ptrdiff_t j = 0; j <= rows; ++j) {  // between coarse rows j - 1 and j
+        float* const free = below;
+        below = here, here = above, above = free;
+        float* const low = fine + (2 * j - 1) * fine_stride;
+        float* const high = low + fine_stride;
+        for (std::ptrdiff_t k = 0; k < count; k += 16)
+            for (std::ptrdiff_t i = k; i < k + 16; ++i) {
+                low[i] += 0.75f * below[i] + 0.25f * here[i];
+                high[i] += 0.75f * here[i] + 0.25f * below[i];
+            }
+        if (j + 1 < rows)
+            refine_columns(above, coarse + (j + 1) * stride, eights);
+        else
+            for (std::ptrdiff_t i = 0; i < count; ++i) above[i] = 0;
     }
 }
 

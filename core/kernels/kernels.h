@@ -49,6 +49,10 @@ struct Kernels {
     void (*wave_outflow)(float* v, const float* h, std::ptrdiff_t count, float factor);
     /// u[i] += factor (p[i] - p[i - behind]).
     void (*wave_push)(float* u, const float* p, std::ptrdiff_t behind, std::ptrdiff_t count, float factor);
+    /// The same for both velocities of a rectangle whose cells all have a neighbour to the left and below: rows of u and v
+    /// are `stride` apart, rows of p `columns`.
+    void (*wave_push_rows)(float* u, float* v, std::ptrdiff_t stride, const float* p, std::ptrdiff_t columns,
+                           std::ptrdiff_t rows, std::ptrdiff_t count, float factor);
     /// Heights of a row later on: out[i] = h[i] - rise times the divergence + bend times the sum of the differences to the
     /// four neighbours. `v` and `v_above` are the faces below and above the row.
     void (*heights_ahead_row)(float* out, const float* h, const float* h_below, const float* h_above, const float* u,
@@ -71,7 +75,8 @@ struct Kernels {
     // footprint_rows.inl
     void (*slice_elements)(const ElementBlock* block, const SliceLevel* level, float depth, float ux, float uy,
                            float uz, float* laid, float* left);
-    void (*refine_row)(float* fine, const float* near, const float* far, std::ptrdiff_t count);
+    void (*refine)(float* fine, std::ptrdiff_t fine_stride, const float* coarse, std::ptrdiff_t stride,
+                   std::ptrdiff_t rows, std::ptrdiff_t eights);
     void (*add_change_row)(float* h, const float* now, const float* before, std::ptrdiff_t count);
     /// Eq. 6 for sources `first` to first + 15, and their forces added to `total`. Where `skip_friction` is set, the
     /// friction half of the forces and sums is left as it was.

@@ -42,6 +42,7 @@ const Kernels kernels{
     wave_faces_4,
     wave_outflow,
     wave_push,
+    wave_push_rows,
     heights_ahead_row,
     any_above,
     scale,
@@ -51,7 +52,7 @@ const Kernels kernels{
     clip_triangles,
     height_range,
     slice_elements,
-    refine_row,
+    refine,
     add_change_row,
     look_up_block,
 };

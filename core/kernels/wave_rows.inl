@@ -125,6 +125,15 @@ static void wave_push(float* __restrict u, const float* __restrict p, std::ptrdi
     for (std::ptrdiff_t i = 0; i < count; ++i) u[i] += factor * (p[i] - p[i - behind]);
 }
 
+static void wave_push_rows(float* __restrict u, float* __restrict v, std::ptrdiff_t stride, const float* __restrict p,
+                           std::ptrdiff_t columns, std::ptrdiff_t rows, std::ptrdiff_t count, float factor) {
+    for (std::ptrdiff_t j = 0; j < rows; ++j, u += stride, v += stride, p += columns)
+        for (std::ptrdiff_t i = 0; i < count; ++i) {
+            u[i] += factor * (p[i] - p[i - 1]);
+            v[i] += factor * (p[i] - p[i - columns]);
+        }
+}
+
 static void scale(float* __restrict x, std::ptrdiff_t count, float factor) {
     for (std::ptrdiff_t i = 0; i < count; ++i) x[i] *= factor;
 }

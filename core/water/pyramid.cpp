@@ -18,21 +18,20 @@ void spline_weights(float offset, float w[3]) {
 }  // namespace
 
 Pyramid::Pyramid(std::int32_t size, std::pmr::memory_resource* memory)
-    : grid_{{{std::pmr::vector<float>(memory), 0, {}},
-             {std::pmr::vector<float>(memory), 0, {}},
-             {std::pmr::vector<float>(memory), 0, {}},
-             {std::pmr::vector<float>(memory), 0, {}}}} {
+    : grid_{{Grid(memory), Grid(memory), Grid(memory), Grid(memory)}} {
     for (int k = 0; k < levels; ++k) {
         Grid& grid = grid_[static_cast<std::size_t>(k)];
         grid.size = size >> k;
-        grid.value.assign(static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size), 0.0f);
+        // Coarse rows go on to whole eights and have an empty one between them, for gather().
+        grid.stride = k == 0 ? grid.size : (grid.size + 7) / 8 * 8 + 8;
+        grid.value.assign(static_cast<std::size_t>(grid.size * grid.stride), 0.0f);
     }
 }
 
 void Pyramid::clear() {
     for (Grid& grid : grid_) {
         for (std::int32_t j = grid.wet.j0; j < grid.wet.j1; ++j) {
-            float* row = grid.value.data() + static_cast<std::ptrdiff_t>(j) * grid.size;
+            float* const row = grid.row(j);
             std::fill(row + grid.wet.i0, row + grid.wet.i1, 0.0f);
         }
         grid.wet = {};
@@ -48,8 +47,8 @@ bool Pyramid::add(int level, float x, float y, float amount) {
     float wx[3], wy[3];
     spline_weights(x - static_cast<float>(i) - 0.5f, wx);
     spline_weights(y - static_cast<float>(j) - 0.5f, wy);
-    float* row = grid.value.data() + static_cast<std::ptrdiff_t>(j - 1) * grid.size + (i - 1);
-    for (int q = 0; q < 3; ++q, row += grid.size) {
+    float* row = grid.row(j - 1) + (i - 1);
+    for (int q = 0; q < 3; ++q, row += grid.stride) {
         const float part = amount * wy[q];
         row[0] += part * wx[0];
         row[1] += part * wx[1];
@@ -73,22 +72,22 @@ bool Pyramid::add_wide(float x, float y, float width, float amount) {
 }
 
 void Pyramid::gather() {
-    const auto refine = kernels().refine_row;
+    const auto refine = kernels().refine;
     for (std::size_t k = levels - 1; k > 0; --k) {
         const Grid& from = grid_[k];
         if (from.wet.empty()) continue;
         Grid& to = grid_[k - 1];
         const Rect& w = from.wet;
-        const Rect r{2 * w.i0 - 1, 2 * w.j0 - 1, 2 * w.i1 + 1, 2 * w.j1 + 1};
-        for (std::int32_t j = r.j0; j < r.j1; ++j) {
-            const std::int32_t near = j >> 1, far = (j & 1) != 0 ? near + 1 : near - 1;
-            const float* rows = from.value.data() + (w.i0 - 1);
-            refine(to.value.data() + static_cast<std::ptrdiff_t>(j) * to.size + r.i0,
-                   rows + static_cast<std::ptrdiff_t>(near) * from.size,
-                   rows + static_cast<std::ptrdiff_t>(far) * from.size, w.i1 - w.i0);
-        }
-        to.wet.include(r);
+        const std::int32_t begin = (w.i0 - 1) / 8 * 8, end = (w.i1 + 8) / 8 * 8;
+        refine(to.row(2 * w.j0) + 2 * begin, to.stride, from.row(w.j0) + begin, from.stride, w.j1 - w.j0,
+               (end - begin) / 8);
+        to.wet.include({2 * w.i0 - 1, 2 * w.j0 - 1, 2 * w.i1 + 1, 2 * w.j1 + 1});
     }
+    // Rows of whole vectors for all that goes through them; what is added is zero.
+    Rect& wet = grid_[0].wet;
+    if (wet.empty()) return;
+    wet.i0 = wet.i0 / 16 * 16;
+    wet.i1 = (wet.i1 + 15) / 16 * 16;
 }
 
 void Pyramid::swap_finest(std::pmr::vector<float>& values, Rect& wet) {

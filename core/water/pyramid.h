@@ -21,7 +21,7 @@ public:
     /// The same for all but the finest, nearly, in cells of the level.
     static constexpr float width_of_spline = 0.7f;
 
-    /// `size`: cells along a side of the finest grid, a multiple of 2^(levels - 1).
+    /// `size`: cells along a side of the finest grid, a multiple of sixteen.
     Pyramid(std::int32_t size, std::pmr::memory_resource* memory);
 
     /// Everything is zero again. Costs what was laid.
@@ -37,7 +37,8 @@ public:
     void gather();
 
     std::int32_t size() const { return grid_[0].size; }
-    const Rect& wet() const { return grid_[0].wet; }  ///< cells of the finest grid with something in them
+    /// Cells of the finest grid with something in them; once gathered, in whole sixteens of columns.
+    const Rect& wet() const { return grid_[0].wet; }
     void include(const Rect& r) { grid_[0].wet.include(r); }
     float* data() { return grid_[0].value.data(); }
     const float* data() const { return grid_[0].value.data(); }
@@ -48,8 +49,13 @@ public:
 
 private:
     struct Grid {
+        explicit Grid(std::pmr::memory_resource* memory) : value(memory) {}
+        float* row(std::int32_t j) { return value.data() + j * stride; }
+        const float* row(std::int32_t j) const { return value.data() + j * stride; }
+
         std::pmr::vector<float> value;
         std::int32_t size = 0;
+        std::ptrdiff_t stride = 0;
         Rect wet;
     };
     std::array<Grid, levels> grid_;

@@ -349,10 +349,18 @@ void Field::advance(float dt, float gravity, std::uint32_t steps, const Push* pu
 void Field::push(const Push& push) {
     const Rect r = pushed(*this, push);
     wake(r.moved(push.di, push.dj));
-    for (std::int32_t j = r.j0; j < r.j1; ++j) {
-        push_cells_row(*this, push, j + push.dj);
-        push_faces_row(*this, push, j + push.dj);
-    }
+    // At a border, one row of cells and one column of faces have a neighbour on one side only.
+    const std::int32_t i0 = std::max({r.i0, 1, 1 - push.di}), j0 = std::max({r.j0, 1, 1 - push.dj});
+    const float factor = push.factor / def_.cell;
+    const auto p = [&](std::int32_t i, std::int32_t j) { return push.pressure + std::ptrdiff_t{j} * push.columns + i; };
+    if (j0 < r.j1 && i0 < r.i1)
+        kernels().wave_push_rows(velocity_x_row(j0 + push.dj) + i0 + push.di,
+                                 velocity_y_row(j0 + push.dj) + i0 + push.di, stride_, p(i0, j0), push.columns,
+                                 r.j1 - j0, r.i1 - i0, factor);
+    for (std::int32_t j = r.j0; j < j0 && j < r.j1; ++j) push_cells_row(*this, push, j + push.dj);
+    for (std::int32_t i = r.i0; i < i0 && i < r.i1; ++i)
+        for (std::int32_t j = j0; j < r.j1; ++j)
+            kernels().wave_push(velocity_y_row(j + push.dj) + i + push.di, p(i, j), push.columns, 1, factor);
 }
 
 }  // namespace frm

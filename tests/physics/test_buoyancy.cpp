@@ -409,8 +409,8 @@ TEST_CASE("the wet surface and the footprint are the same bits with every instru
                 keep(laid), keep(left);
             }
         }
-        float fine[80] = {};
-        kernel.refine_row(fine, heights.data() + 3, heights.data() + 67, 37);
+        float fine[8 * 32] = {};
+        kernel.refine(fine + 32, 32, heights.data() + 16, 24, 3, 2);
         kernel.add_change_row(fine, heights.data() + 1, heights.data() + 11, 77);
         keep(fine);
         return out;
