@@ -80,8 +80,9 @@ void lay_displacement(Body& body, float level, bool spread, bool keep_still) {
             if (middle + half <= from || middle - half >= to) continue;
             alignas(64) float laid[kernel_lanes], left[kernel_lanes];
             kernel.slice_elements(&block.element, &slice, centre_depth, up.x, up.y, up.z, laid, left);
+            if (slice.widest > 0)  // the other levels leave nothing
+                for (const float part : left) left_over += static_cast<double>(part);
             for (std::size_t e = 0; e < kernel_lanes; ++e) {
-                left_over += static_cast<double>(left[e]);
                 if (!(laid[e] > 0)) continue;
                 const Vec3f at(block.element.x[e], block.element.y[e], block.element.z[e]);
                 footprint.deposit(k, x0 + dot(along_x, at), y0 + dot(along_y, at), laid[e] * to_amount);

@@ -37,6 +37,10 @@ typedef int LaneNumbers __attribute__((vector_size(4 * FRM_LANES), may_alias));
 #define FRM_LANE_NUMBERS {0, 1, 2, 3}
 #endif
 
+typedef int NumbersAnywhere __attribute__((vector_size(4 * FRM_LANES), may_alias, aligned(4)));
+
+/// The bits of floats that begin anywhere.
+static inline LaneNumbers load_numbers(const float* p) { return *reinterpret_cast<const NumbersAnywhere*>(p); }
 static inline Lanes load(const float* p) { return *reinterpret_cast<const Lanes*>(p); }
 static inline void store(float* p, Lanes x) { *reinterpret_cast<Lanes*>(p) = x; }
 static inline Lanes all_lanes(float x) { return x - Lanes{}; }

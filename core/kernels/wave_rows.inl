@@ -195,11 +195,31 @@ static void heights_ahead_row(float* __restrict out, const float* h, const float
     }
 }
 
+/// As whole numbers the bits of |x| are in the order of |x|, and those of what is not a number come after all. What is
+/// loud mostly is so in its first rows: these are looked at alone.
 static bool any_above(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit) {
-    for (std::ptrdiff_t j = 0; j < rows; ++j, x += stride) {
-        std::int32_t within = 1;
-        for (std::ptrdiff_t i = 0; i < count; ++i) within &= (x[i] <= limit) & (x[i] >= -limit);
-        if (!within) return true;
+    constexpr std::int32_t size_bits = 0x7fffffff;
+    std::int32_t limit_bits;
+    memcpy(&limit_bits, &limit, sizeof limit_bits);
+    for (std::ptrdiff_t j = 0, end = 4; j < rows; end = rows) {
+        LaneNumbers most = {};
+        std::int32_t most_of_rest = 0;
+        for (; j < rows && j < end; ++j) {
+            const float* const row = x + j * stride;
+            std::ptrdiff_t i = 0;
+            for (; i + FRM_LANES <= count; i += FRM_LANES) {
+                const LaneNumbers size = load_numbers(row + i) & size_bits;
+                most = size > most ? size : most;
+            }
+            for (; i < count; ++i) {
+                std::int32_t bits;
+                memcpy(&bits, row + i, sizeof bits);
+                bits &= size_bits;
+                most_of_rest = bits > most_of_rest ? bits : most_of_rest;
+            }
+        }
+        for (int k = 0; k < FRM_LANES; ++k) most_of_rest = most[k] > most_of_rest ? most[k] : most_of_rest;
+        if (most_of_rest > limit_bits) return true;
     }
     return false;
 }

@@ -9,7 +9,7 @@ namespace frm {
 namespace {
 
 constexpr std::int32_t alignment = 8;  ///< the window moves by whole cells of the coarsest level
-constexpr std::int32_t margin = 24;    ///< around the body: three of the coarsest cells, and another
+constexpr std::int32_t margin = 16;    ///< around the body: two of the coarsest cells, which Pyramid::add keeps free
 constexpr std::int32_t largest_window = 512;
 constexpr float widest_splat = 8;  ///< cells of a Gaussian that a large source presses
 
