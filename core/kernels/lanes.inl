@@ -49,6 +49,9 @@ static inline Lanes first_lanes(Lanes x, std::ptrdiff_t count) {
     const LaneNumbers lane = FRM_LANE_NUMBERS;
     return lane < static_cast<int>(count) ? x : Lanes{};
 }
+/// x in the lanes of a mask (all bits set), 0 in the others; x and y together, where one of them is 0.
+static inline Lanes only(Lanes x, LaneNumbers mask) { return (Lanes)((LaneNumbers)x & mask); }
+static inline Lanes either(Lanes x, Lanes y) { return (Lanes)((LaneNumbers)x | (LaneNumbers)y); }
 /// x with `value` in one lane.
 static inline Lanes with_lane(Lanes x, std::ptrdiff_t at, float value) {
     const LaneNumbers lane = FRM_LANE_NUMBERS;

@@ -3,38 +3,49 @@
 /// One vector of v[i] -= f (h[i] - below[i]).
 static inline Lanes moved_across(Lanes v, Lanes h, Lanes below, float f) { return v - f * (h - below); }
 
+/// How a row ends: its last vector's lanes that are cells, and the lane of the face after them if it is in that vector.
+struct RowEnd {
+    std::ptrdiff_t last;  ///< where the last vector begins
+    LaneNumbers cells, face;
+    bool face_after;  ///< the face after the last cell begins the next vector
+
+    explicit RowEnd(std::ptrdiff_t count)
+        : last((count - 1) / FRM_LANES * FRM_LANES), face_after(count - last == FRM_LANES) {
+        const LaneNumbers lane = FRM_LANE_NUMBERS;
+        const auto valid = static_cast<int>(count - last);
+        cells = lane < valid, face = lane == valid;
+    }
+};
+
 // The velocities of a vector are needed at its right end by the heights of the vector before it: heights lag one vector
 // behind, and what both need stays in registers. Each array is read and written once.
 template <bool moves_above>
-static inline void step_row(const WaveRows& r, float* const h, float* const u, float* const v, float f, float g) {
+static inline void step_row(const WaveRows& r, const RowEnd& end, float* const h, float* const u, float* const v,
+                            float f, float g) {
     const float* const height_above = h + r.stride;
     float* const v_above = v + r.stride;
-    const std::ptrdiff_t whole = (r.count + FRM_LANES - 1) / FRM_LANES * FRM_LANES;
     const float left = -r.outflow * h[0], right = r.wall_right ? r.outflow * h[r.count - 1] : 0.0f;
     Lanes height = load(h), face = load(u) - f * (height - FRM_FROM_LEFT(load(h - FRM_LANES), height));
     if (r.wall_left) face[0] = left;
-    const auto heights = [&](std::ptrdiff_t i, Lanes next_face, std::ptrdiff_t valid) {
+    const auto heights = [&](std::ptrdiff_t i, Lanes next_face, const auto& kept) {
         Lanes above = load(v_above + i);
         if (moves_above) {
-            above = moved_across(above, load(height_above + i), height, f);
-            store(v_above + i, valid < FRM_LANES ? first_lanes(above, valid) : above);
+            above = kept(moved_across(above, load(height_above + i), height, f));
+            store(v_above + i, above);
         }
-        const Lanes now = height - g * ((FRM_FROM_RIGHT(face, next_face) - face) + (above - load(v + i)));
-        store(h + i, valid < FRM_LANES ? first_lanes(now, valid) : now);
+        store(h + i, kept(height - g * ((FRM_FROM_RIGHT(face, next_face) - face) + (above - load(v + i)))));
     };
-    std::ptrdiff_t i = 0;
-    for (; i < whole - FRM_LANES; i += FRM_LANES) {
+    for (std::ptrdiff_t i = 0; i < end.last; i += FRM_LANES) {
         const Lanes next = load(h + i + FRM_LANES);
         const Lanes next_face = load(u + i + FRM_LANES) - f * (next - FRM_FROM_LEFT(height, next));
         store(u + i, face);
-        heights(i, next_face, FRM_LANES);
+        heights(i, next_face, [](Lanes x) { return x; });
         height = next, face = next_face;
     }
-    const std::ptrdiff_t valid = r.count - i;
-    if (valid < FRM_LANES) face = with_lane(first_lanes(face, valid), valid, right);
-    store(u + i, face);
-    heights(i, with_lane(Lanes{}, 0, right), valid);
-    if (valid == FRM_LANES) u[r.count] = right;
+    face = either(only(face, end.cells), only(all_lanes(right), end.face));
+    store(u + end.last, face);
+    heights(end.last, with_lane(Lanes{}, 0, right), [&](Lanes x) { return only(x, end.cells); });
+    if (end.face_after) u[r.count] = right;
 }
 
 // The same at fourth order: differences (27 d1 - d3) / 24, whose two weights are in f1, f3 and g1, g3.
@@ -163,12 +174,13 @@ static inline void damp_ends(float* h, float* u, float* v, const WaveRows& r, co
 static void wave_rows(const WaveRows& rows, float f, float g) {
     const WaveRows r = rows;  // copies that no store can change
     const WaveDamp d = r.damp ? *r.damp : WaveDamp{};
+    const RowEnd end(r.count);
     float *h = r.height, *u = r.velocity_x, *v = r.velocity_y;
     for (std::ptrdiff_t j = 0; j < r.rows; ++j, h += r.stride, u += r.stride, v += r.stride) {
         if (r.with_faces)
-            step_row<true>(r, h, u, v, f, g);
+            step_row<true>(r, end, h, u, v, f, g);
         else
-            step_row<false>(r, h, u, v, f, g);
+            step_row<false>(r, end, h, u, v, f, g);
         if (r.damp) damp_ends(h, u, v, r, d);
     }
 }
