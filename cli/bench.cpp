@@ -7,6 +7,7 @@
 #include "cli/bench_body.h"
 #include "cli/bench_lookup.h"
 #include "cli/bench_mujoco.h"
+#include "cli/bench_record.h"
 #include "cli/bench_tick.h"
 #include "cli/bench_waves.h"
 #include "cli/command.h"
@@ -125,6 +126,15 @@ void waves(const Options& o, Results& out) {
             "step of 64 x 64 cells with waves in 2048 x 2048", 3);
 }
 
+void recording(const Options& o, const std::vector<std::uint8_t>& large, Results& out) {
+    const RecordCost cost = measure_recording(large, o.seconds);
+    out.add("record_us_per_tick", cost.us_per_tick, "us",
+            "recording a body, its device and packets of 512 bytes, in the thread that ticks", 2);
+    out.add("record_kb_per_s", cost.kb_per_s, "kB/s", "the same at 1 kHz, on the disk: hand, water, 60 bytes of packet",
+            64);
+    out.add("record_lost_events", cost.lost, "", "for which there was no room meanwhile");
+}
+
 void flow(const Options& o, Results& out) {
     const bake::FlowSpeed speed = bake::measure_flow_speed(o.seconds, 0);
     out.add("flow_inplace_bandwidth", speed.bandwidth, "GB/s", "memory read and written in place, all cores");
@@ -141,6 +151,7 @@ void run(const Options& o) {
     ticks(o, large, results);
     parts(o, large, results);
     waves(o, results);
+    recording(o, large, results);
     flow(o, results);
     if (o.json) std::printf("%s\n", results.json().dump(2).c_str());
 }

@@ -28,6 +28,7 @@ void add_flow(CLI::App& app);
 void add_force(CLI::App& app);
 void add_run(CLI::App& app);
 void add_replay(CLI::App& app);
+void add_device(CLI::App& app);
 void add_bench(CLI::App& app);
 
 }  // namespace frm::cli

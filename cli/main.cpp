@@ -42,6 +42,7 @@ void add_commands(CLI::App& app) {
     frm::cli::add_force(app);
     frm::cli::add_run(app);
     frm::cli::add_replay(app);
+    frm::cli::add_device(app);
     frm::cli::add_bench(app);
     for (CLI::App* command : app.get_subcommands({})) command->group("Commands");
 }

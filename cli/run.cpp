@@ -78,7 +78,10 @@ public:
     Run& operator=(const Run&) = delete;
 
     void record(const std::string& path) {
-        session_.check(frm_recorder_create(world_, path.c_str(), nullptr, &recorder_));
+        frm_recorder_def def;
+        session_.check(frm_recorder_def_init(&def, sizeof def));
+        def.waits = 1;
+        session_.check(frm_recorder_create(world_, path.c_str(), &def, &recorder_));
         recording_ = path;
         for (const RunningBody& body : bodies_)
             if (body.device) session_.check(frm_recorder_add_device(recorder_, body.device));

@@ -1,4 +1,6 @@
 // The C entry points of devices, recorders and replays.
+#include <cstring>
+
 #include "device/device.h"
 #include "device/recorder.h"
 #include "device/replay.h"
@@ -13,7 +15,10 @@ namespace {
 
 frm_recorder_def default_recorder() {
     frm_recorder_def def{};
-    def.hash_interval = 100;
+    const device::RecorderDef defaults;
+    def.hash_interval = defaults.hash_interval;
+    def.force_interval = defaults.force_interval;
+    def.queue_bytes = defaults.queue_bytes;
     return def;
 }
 
@@ -76,6 +81,19 @@ frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_device_comm
     });
 }
 
+frm_status FRM_CALL frm_device_get_raw(frm_device device, uint8_t* data, uint32_t capacity, uint32_t* size) {
+    return with<Device>(device, [&](Context&, Device& object) {
+        require_pointer(size, "size");
+        std::uint8_t packet[device::largest_packet];
+        const auto length = static_cast<std::uint32_t>(object.raw(packet, sizeof packet));
+        *size = length;
+        if (!data) return;
+        if (capacity < length)
+            throw Error(FRM_ERROR_CAPACITY, "the buffer takes %u bytes; %u are needed", capacity, length);
+        std::memcpy(data, packet, length);
+    });
+}
+
 frm_status FRM_CALL frm_device_stop(frm_device device) {
     return with<Device>(device, [&](Context&, Device& object) { object.stop(); });
 }
@@ -92,10 +110,14 @@ frm_status FRM_CALL frm_recorder_create(frm_world world, const char* path, const
         require_changeable(object);
         const frm_recorder_def d = read_def(def, default_recorder(), "def");
         require_range(d.hash_interval, 1, 1e6, "def.hash_interval");
+        require_range(d.queue_bytes, 1 << 16, 1 << 30, "def.queue_bytes");
+        if (d.waits > 1) throw Error(FRM_ERROR_ARGUMENT, "def.waits = %u is not 0 or 1", d.waits);
+        require_range(d.force_interval, 1, 1e6, "def.force_interval");
         if (object.world.observer()) throw Error(FRM_ERROR_STATE, "this world has a recorder already");
         if (object.world.ticks() > 0)
             throw Error(FRM_ERROR_STATE, "this world has ticked already: a recording begins with its world");
-        *recorder = c.add(Kind::recorder, c.make<Recorder>(object, path, d.hash_interval, c.axes().host()));
+        const device::RecorderDef checked{d.hash_interval, d.force_interval, d.queue_bytes, d.waits != 0};
+        *recorder = c.add(Kind::recorder, c.make<Recorder>(object, path, checked, c.axes().host()));
     });
 }
 
@@ -104,6 +126,13 @@ frm_status FRM_CALL frm_recorder_add_device(frm_recorder recorder, frm_device de
         Object* found = c.find(device, Kind::device);
         if (!found) throw Error(FRM_ERROR_HANDLE, "this is not a device of this context, or it is no more");
         object.add_device(static_cast<Device&>(*found));
+    });
+}
+
+frm_status FRM_CALL frm_recorder_get_stats(frm_recorder recorder, frm_recorder_stats* stats) {
+    return with<Recorder>(recorder, [&](Context&, Recorder& object) {
+        require_out(stats, "stats");
+        write_struct(stats, object.stats());
     });
 }
 
@@ -135,6 +164,16 @@ frm_status FRM_CALL frm_replay_get_info(frm_replay replay, frm_replay_info* info
     return with<Replay>(replay, [&](Context&, Replay& object) {
         require_out(info, "info");
         write_struct(info, object.info());
+    });
+}
+
+frm_status FRM_CALL frm_replay_set_tolerance(frm_replay replay, const frm_replay_tolerance* tolerance) {
+    return with<Replay>(replay, [&](Context&, Replay& object) {
+        const frm_replay_tolerance t = read_def(tolerance, frm_replay_tolerance{}, "tolerance");
+        require_range(static_cast<double>(t.relative), 0, 1, "tolerance.relative");
+        require_range(static_cast<double>(t.force), 0, 1e9, "tolerance.force");
+        require_range(static_cast<double>(t.torque), 0, 1e9, "tolerance.torque");
+        object.set_tolerance(t);
     });
 }
 

@@ -1,5 +1,6 @@
 #include "device/device.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -63,8 +64,16 @@ frm_device_state Device::exchange(const api::Axes& axes, const frm_device_comman
         driver_.stop(user_, instance_);
         throw Error(FRM_ERROR_DEVICE, "the device gave a state that cannot be (%s); it was stopped", error.text());
     }
-    if (recorder) recorder->exchanged(recorded_as, command, state);
+    if (recorder) recorder->exchanged(*this, command, state);
     return state;
+}
+
+std::size_t Device::raw(std::uint8_t* data, std::size_t capacity) {
+    if (!driver_.raw) return 0;
+    std::uint32_t size = 0;
+    const auto most = static_cast<std::uint32_t>(std::min<std::size_t>(capacity, largest_packet));
+    if (driver_.raw(user_, instance_, data, most, &size) != FRM_OK) return 0;
+    return std::min(size, most);
 }
 
 }  // namespace frm::device

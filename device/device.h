@@ -18,10 +18,13 @@ public:
     void calibrate();
     frm_device_state exchange(const api::Axes& axes, const frm_device_command& command);
     void stop();
+    /// The packet of the last exchange, at most `capacity` bytes of it; its size. 0: the driver gives none.
+    std::size_t raw(std::uint8_t* data, std::size_t capacity);
 
     /// Who records the exchanges, and under which number; null for nobody.
     Recorder* recorder = nullptr;
     std::uint32_t recorded_as = 0;
+    std::uint64_t exchanges_recorded = 0;
 
 private:
     frm_device_driver driver_;

@@ -56,7 +56,7 @@ frm_status FRM_CALL stop(void*, void*) { return FRM_OK; }
 
 const frm_device_driver& null_driver() {
     static const frm_device_driver driver{
-        sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop};
+        sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop, nullptr};
     return driver;
 }
 

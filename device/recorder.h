@@ -1,26 +1,41 @@
-// Writes down what a world is told and what it answers.
+// Writes down what a world is told and what it answers: handed over without waiting, written by a thread of its own.
 #pragma once
 
+#include <condition_variable>
+#include <exception>
 #include <memory>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 #include "core/api/objects.h"
+#include "device/event_queue.h"
 #include "device/recording.h"
 
 namespace frm::device {
 
 class Device;
 
+struct RecorderDef {
+    std::uint32_t hash_interval = 100;   ///< ticks
+    std::uint32_t force_interval = 1;    ///< ticks; exchanges
+    std::uint32_t queue_bytes = 1 << 22;
+    bool waits = false;  ///< for the writer, where it has no room; else what has none is lost, and counted
+};
+
 class Recorder : public api::Object, public WorldObserver {
 public:
-    Recorder(api::WorldObject& world, const char* path, std::uint32_t hash_interval, std::uint32_t axes);
+    Recorder(api::WorldObject& world, const char* path, const RecorderDef& def, std::uint32_t axes);
     ~Recorder() override;
 
     void add_device(Device& device);
     void forget(Device& device);
-    /// Throws Error (FRM_ERROR_FILE) if anything could not be written.
+    /// Throws Error: FRM_ERROR_FILE if anything could not be written, FRM_ERROR_CAPACITY if anything was lost.
     void close();
-    void exchanged(std::uint32_t device, const frm_device_command& command, const frm_device_state& state);
+    frm_recorder_stats stats() const;
+
+    /// With the packet that the device's driver gives for it.
+    void exchanged(Device& device, const frm_device_command& command, const frm_device_state& state);
 
     void water_created(const World& world) override;
     void water_destroyed(const World& world) override;
@@ -32,15 +47,50 @@ public:
     void ticked(const World& world, float dt) override;
 
 private:
+    // What goes through the queue as it is in memory.
+    struct ExchangeHead {
+        std::uint32_t device, has_wrenches;
+        frm_wrench command;
+        frm_device_state state;
+    };
+    struct MotionBytes {
+        std::uint32_t id;
+        Pose pose;
+        Twist twist;
+    };
+    struct TickHead {
+        std::uint64_t tick, hash;
+        double time;
+        float dt;
+        std::uint32_t bodies, has_hash, has_forces;
+    };
+
+    template <typename Fill>
+    void put(EventType type, std::size_t size, Fill&& fill);
+    /// For events that come seldom, from calls that may take their time.
+    void put(Event&& event);
+    bool has_room_again();
+    void lose();
+    void start();
+    void work();
+    void take_all();
+    void take(std::uint32_t type, const std::uint8_t* data, std::size_t size);
     void detach();
     std::uint32_t number_of(const std::shared_ptr<const Map>& map);
 
     api::WorldObject& world_;
-    RecordingWriter writer_;
-    std::uint32_t hash_interval_;
+    RecordingWriter writer_;  ///< the thread's, while it runs
+    RecorderDef def_;
+    EventQueue queue_;
+    std::atomic<std::uint64_t> lost_{0}, lost_since_{0}, bytes_{0}, ticks_{0};
+    std::exception_ptr failure_;  ///< of the thread
+    std::mutex lock_;
+    std::condition_variable wake_;
+    bool closing_ = false;
+    std::thread thread_;
+    Event taken_;
     std::vector<std::shared_ptr<const Map>> maps_;
     std::vector<Device*> devices_;
-    event::Tick tick_;
     bool attached_ = false;
 };
 

@@ -1,10 +1,11 @@
 #include <zstd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 
-#include "device/recording.h"
+#include "device/recording_columns.h"
 
 namespace frm::device {
 namespace {
@@ -23,21 +24,27 @@ bool within(const Vec3f& v, double limit) {
     return within(v.x, -limit, limit) && within(v.y, -limit, limit) && within(v.z, -limit, limit);
 }
 
-Pose read_pose(ByteReader& r) {
-    Pose p;
-    p.position.x = r.f64(), p.position.y = r.f64(), p.position.z = r.f64();
-    p.rotation.x = r.f32(), p.rotation.y = r.f32(), p.rotation.z = r.f32(), p.rotation.w = r.f32();
+void require_pose(const Pose& p) {
     const Quat<float>& q = p.rotation;
     require(within(p.position.x, -1e9, 1e9) && within(p.position.y, -1e9, 1e9) && within(p.position.z, -1e9, 1e9) &&
                 within(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 0.99, 1.01),
             "a pose");
+}
+
+Pose read_pose(ByteReader& r) {
+    Pose p;
+    p.position.x = r.f64(), p.position.y = r.f64(), p.position.z = r.f64();
+    p.rotation.x = r.f32(), p.rotation.y = r.f32(), p.rotation.z = r.f32(), p.rotation.w = r.f32();
+    require_pose(p);
     return p;
 }
+
+void require_twist(const Twist& t) { require(within(t.linear, 1e4) && within(t.angular, 1e4), "a twist"); }
 
 Twist read_twist(ByteReader& r) {
     Twist t;
     t.linear = r.vec3(), t.angular = r.vec3();
-    require(within(t.linear, 1e4) && within(t.angular, 1e4), "a twist");
+    require_twist(t);
     return t;
 }
 
@@ -151,9 +158,15 @@ event::Exchange read_exchange(ByteReader& r) {
     return e;
 }
 
+/// From version 3 on the events of every tick are not among these.
 Event read_event(ByteReader& r, std::uint32_t version) {
     const std::uint8_t type = r.u8();
-    switch (static_cast<EventType>(type)) {
+    const auto in_columns = [&](EventType t) {
+        return t == EventType::motion || t == EventType::tick || t == EventType::exchange;
+    };
+    const bool unknown = version < 3 ? type == static_cast<std::uint8_t>(EventType::gap)
+                                     : in_columns(static_cast<EventType>(type));
+    if (!unknown) switch (static_cast<EventType>(type)) {
         case EventType::world:
             return read_world(r, version);
         case EventType::map:
@@ -180,83 +193,231 @@ Event read_event(ByteReader& r, std::uint32_t version) {
             return read_exchange(r);
         case EventType::end:
             return event::End{r.u64()};
+        case EventType::gap:
+            return event::Gap{r.u64()};
     }
     throw Error(FRM_ERROR_CORRUPT, "an event of type %u is not known", type);
 }
 
-constexpr std::size_t file_header_bytes = 16, block_header_bytes = 24;
-constexpr std::uint64_t largest_block = std::uint64_t{1} << 31;
+constexpr std::size_t file_header_bytes = 16, old_block_header_bytes = 24, block_header_bytes = 40, tail_bytes = 16;
 
 }  // namespace
 
-RecordingReader::RecordingReader(const char* path) : path_(path) {
-    std::FILE* file = std::fopen(path, "rb");
-    if (!file) throw Error(FRM_ERROR_FILE, "%s: %s", path, std::strerror(errno));
-    std::uint8_t block[1 << 16];
-    std::size_t got;
-    while ((got = std::fread(block, 1, sizeof block, file)) > 0) file_.insert(file_.end(), block, block + got);
-    const bool bad = std::ferror(file) != 0;
-    std::fclose(file);
-    if (bad) throw Error(FRM_ERROR_FILE, "%s: cannot be read", path);
-    ByteReader r(file_.data(), file_.size(), path);
-    if (file_.size() < file_header_bytes || std::memcmp(r.take(8), recording_magic, 8) != 0)
-        throw Error(FRM_ERROR_CORRUPT, "%s: this is not a recording (its first bytes are not the format's)", path);
-    version_ = r.u32();
-    if (version_ < 1 || version_ > recording_version)
-        throw Error(FRM_ERROR_VERSION, "%s: recording version %u; this library reads versions 1 to %u", path, version_,
-                    recording_version);
-    if (r.u32() != 0) throw Error(FRM_ERROR_VERSION, "%s: the header has flags that this library does not know", path);
-    rewind();
+RecordingReader::RecordingReader(const char* path) : path_(path), columns_(std::make_unique<ColumnReader>()) {
+    file_ = std::fopen(path, "rb");
+    if (!file_) throw Error(FRM_ERROR_FILE, "%s: %s", path, std::strerror(errno));
+    try {
+        if (std::fseek(file_, 0, SEEK_END) != 0 || std::ftell(file_) < 0)
+            throw Error(FRM_ERROR_FILE, "%s: cannot be read", path);
+        size_ = static_cast<std::uint64_t>(std::ftell(file_));
+        std::uint8_t head[file_header_bytes] = {};
+        if (size_ >= sizeof head) read(0, head, sizeof head);
+        ByteReader r(head, sizeof head, path);
+        if (size_ < sizeof head || std::memcmp(r.take(8), recording_magic, 8) != 0)
+            throw Error(FRM_ERROR_CORRUPT, "%s: this is not a recording (its first bytes are not the format's)", path);
+        version_ = r.u32();
+        if (version_ < 1 || version_ > recording_version)
+            throw Error(FRM_ERROR_VERSION, "%s: recording version %u; this library reads versions 1 to %u", path,
+                        version_, recording_version);
+        if (r.u32() != 0)
+            throw Error(FRM_ERROR_VERSION, "%s: the header has flags that this library does not know", path);
+        rewind();
+    } catch (...) {
+        std::fclose(file_);
+        throw;
+    }
 }
+
+RecordingReader::~RecordingReader() { std::fclose(file_); }
 
 void RecordingReader::rewind() {
     at_file_ = file_header_bytes;
-    at_raw_ = blocks_ = 0;
+    at_raw_ = 0, blocks_ = tick_ = 0;
+    time_ = 0;
     raw_.clear();
+    events_left_ = 0;
+    jumps_.clear();
     torn_ = ended_ = false;
 }
 
-bool RecordingReader::next_block() {
-    const std::size_t left = file_.size() - at_file_;
-    if (left < block_header_bytes) return false;
-    ByteReader r(file_.data() + at_file_, left, path_.c_str());
-    if (r.u32() != block_mark) throw Error(FRM_ERROR_CORRUPT, "%s: block %zu is damaged", path_.c_str(), blocks_);
-    if (r.u32() != 0)
-        throw Error(FRM_ERROR_CORRUPT, "%s: block %zu: its reserved field is not 0", path_.c_str(), blocks_);
-    const std::uint64_t stored = r.u64(), raw = r.u64();
-    if (stored > r.left()) return false;
-    if (raw > largest_block) throw Error(FRM_ERROR_CORRUPT, "%s: block %zu is too large", path_.c_str(), blocks_);
-    const std::uint8_t* data = r.take(static_cast<std::size_t>(stored));
-    if (ZSTD_getFrameContentSize(data, static_cast<std::size_t>(stored)) != raw)
-        throw Error(FRM_ERROR_CORRUPT, "%s: block %zu is damaged", path_.c_str(), blocks_);
-    raw_.resize(static_cast<std::size_t>(raw));
-    const std::size_t size = ZSTD_decompress(raw_.data(), raw_.size(), data, static_cast<std::size_t>(stored));
-    if (ZSTD_isError(size) || size != raw_.size())
-        throw Error(FRM_ERROR_CORRUPT, "%s: block %zu is damaged (%s)", path_.c_str(), blocks_,
-                    ZSTD_isError(size) ? ZSTD_getErrorName(size) : "size");
-    at_file_ += block_header_bytes + static_cast<std::size_t>(stored);
+void RecordingReader::damaged(const char* what) const {
+    throw Error(FRM_ERROR_CORRUPT, "%s: block %llu (at byte %llu): %s", path_.c_str(),
+                static_cast<unsigned long long>(blocks_), static_cast<unsigned long long>(at_file_), what);
+}
+
+void RecordingReader::read(std::uint64_t offset, void* data, std::size_t size) {
+    if (std::fseek(file_, static_cast<long>(offset), SEEK_SET) != 0 || std::fread(data, 1, size, file_) != size)
+        throw Error(FRM_ERROR_FILE, "%s: cannot be read", path_.c_str());
+}
+
+// False if the file ends inside the head or the contents: cut off.
+bool RecordingReader::read_place(std::uint64_t offset, BlockPlace& place) {
+    if (offset > size_ || size_ - offset < block_header_bytes) return false;
+    std::uint8_t head[block_header_bytes];
+    read(offset, head, sizeof head);
+    ByteReader r(head, sizeof head, path_.c_str());
+    const std::uint32_t mark = r.u32(), kind = r.u32();
+    place.offset = offset;
+    place.stored = r.u32(), place.raw = r.u32();
+    place.tick = r.u64(), place.time = r.f64();
+    if (r.u32() != check_of(head, block_header_bytes - 8)) {
+        // A machine that lost its power leaves zeros where the file had grown.
+        bool zero = true;
+        std::uint8_t part[4096];
+        for (std::uint64_t at = offset; zero && at < size_; at += sizeof part) {
+            const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(sizeof part, size_ - at));
+            read(at, part, count);
+            zero = std::all_of(part, part + count, [](std::uint8_t byte) { return byte == 0; });
+        }
+        if (zero) return false;
+        damaged("its head is damaged");
+    }
+    if (mark != block_mark || kind > static_cast<std::uint32_t>(BlockKind::index)) damaged("its kind is not known");
+    place.kind = static_cast<BlockKind>(kind);
+    if (place.stored > largest_block || place.raw > largest_block) damaged("it is too large");
+    if (size_ - offset - block_header_bytes < place.stored) return false;
+    stored_.resize(place.stored);
+    read(offset + block_header_bytes, stored_.data(), stored_.size());
+    if (r.u32() != check_of(stored_.data(), stored_.size())) damaged("its contents are damaged");
+    return true;
+}
+
+void RecordingReader::unpack(const BlockPlace& place) {
     at_raw_ = 0;
+    events_left_ = 0;
+    raw_.clear();
+    if (place.kind == BlockKind::bytes) {
+        if (ZSTD_getFrameContentSize(stored_.data(), stored_.size()) != place.raw)
+            damaged("it does not hold what its head says");
+        raw_.resize(place.raw);
+        const std::size_t size = ZSTD_decompress(raw_.data(), raw_.size(), stored_.data(), stored_.size());
+        if (ZSTD_isError(size) || size != raw_.size()) damaged("it cannot be decompressed");
+        return;
+    }
+    if (place.kind == BlockKind::first_columns) columns_->restart();
+    if (place.raw > most_events) damaged("it has too many events");
+    columns_->coder().start(stored_.data(), stored_.size());
+    events_left_ = place.raw;
+}
+
+// The index is not trusted: a block must be what it says there.
+void RecordingReader::jump() {
+    if (jumps_.empty()) return;
+    const BlockPlace to = jumps_.back();
+    jumps_.pop_back();
+    at_file_ = to.offset;
+    BlockPlace place;
+    if (to.offset < file_header_bytes || !read_place(to.offset, place) || place.kind != to.kind || place.tick != to.tick)
+        throw Error(FRM_ERROR_CORRUPT, "%s: its index does not fit", path_.c_str());
+    tick_ = place.tick, time_ = place.time;
+}
+
+bool RecordingReader::next_block() {
+    if (version_ < 3) return next_block_before_3();
+    jump();
+    BlockPlace place;
+    if (!read_place(at_file_, place)) return false;
+    if (place.kind == BlockKind::index) damaged("an index before the end of the recording");
+    unpack(place);
+    at_file_ += block_header_bytes + place.stored;
+    ++blocks_;
+    return true;
+}
+
+bool RecordingReader::next_block_before_3() {
+    const std::uint64_t left = size_ - at_file_;
+    if (left < old_block_header_bytes) return false;
+    std::uint8_t head[old_block_header_bytes];
+    read(at_file_, head, sizeof head);
+    ByteReader r(head, sizeof head, path_.c_str());
+    if (r.u32() != block_mark || r.u32() != 0) damaged("its head is damaged");
+    const std::uint64_t stored = r.u64(), raw = r.u64();
+    if (stored > left - old_block_header_bytes) return false;
+    if (raw > largest_block) damaged("it is too large");
+    stored_.resize(static_cast<std::size_t>(stored));
+    read(at_file_ + old_block_header_bytes, stored_.data(), stored_.size());
+    BlockPlace place;
+    place.raw = static_cast<std::uint32_t>(raw);
+    unpack(place);
+    at_file_ += old_block_header_bytes + stored;
     ++blocks_;
     return true;
 }
 
 bool RecordingReader::next(Event& event) {
     if (ended_ || torn_) return false;
-    while (at_raw_ == raw_.size()) {
+    while (events_left_ == 0 && at_raw_ == raw_.size()) {
         if (!next_block()) {
             torn_ = true;
             return false;
         }
     }
-    ByteReader r(raw_.data() + at_raw_, raw_.size() - at_raw_, "an event");
     try {
-        event = read_event(r, version_);
+        if (events_left_ > 0) {
+            if (!columns_->code(event) || columns_->coder().beyond())
+                throw Error(FRM_ERROR_CORRUPT, "its events cannot be read");
+            if (--events_left_ == 0 && !columns_->coder().whole())
+                throw Error(FRM_ERROR_CORRUPT, "its events do not end with it");
+            if (const auto* motion = std::get_if<event::Motion>(&event))
+                require_pose(motion->pose), require_twist(motion->twist);
+        } else {
+            ByteReader r(raw_.data() + at_raw_, raw_.size() - at_raw_, "an event");
+            event = read_event(r, version_);
+            at_raw_ = raw_.size() - r.left();
+        }
     } catch (const Error& error) {
-        throw Error(error.status(), "%s: block %zu: %s", path_.c_str(), blocks_ - 1, error.text());
+        throw Error(error.status(), "%s: block %llu: %s", path_.c_str(), static_cast<unsigned long long>(blocks_ - 1),
+                    error.text());
     }
-    at_raw_ = raw_.size() - r.left();
+    if (auto* tick = std::get_if<event::Tick>(&event)) {
+        if (version_ < 3) tick->tick = tick_ + 1, tick->time = time_ + static_cast<double>(tick->dt);
+        tick_ = tick->tick, time_ = tick->time;
+    }
     ended_ = std::holds_alternative<event::End>(event);
     return true;
+}
+
+bool RecordingReader::read_index(std::vector<BlockPlace>& index) {
+    if (size_ < file_header_bytes + tail_bytes) return false;
+    std::uint8_t tail[tail_bytes];
+    read(size_ - tail_bytes, tail, sizeof tail);
+    ByteReader r(tail, sizeof tail, path_.c_str());
+    const std::uint64_t at = r.u64();
+    if (std::memcmp(r.take(8), index_magic, 8) != 0 || at < file_header_bytes || at >= size_) return false;
+    BlockPlace place;
+    if (!read_place(at, place) || place.kind != BlockKind::index || place.stored != std::uint64_t{place.raw} * 32)
+        return false;
+    ByteReader entries(stored_.data(), stored_.size(), "the index");
+    for (std::uint32_t i = 0; i < place.raw; ++i) {
+        BlockPlace entry;
+        entry.offset = entries.u64(), entry.tick = entries.u64(), entry.time = entries.f64();
+        entry.kind = entries.u64() == 0 ? BlockKind::bytes : BlockKind::first_columns;
+        index.push_back(entry);
+    }
+    return true;
+}
+
+void RecordingReader::scan(std::vector<BlockPlace>& index) {
+    BlockPlace place;
+    for (std::uint64_t at = file_header_bytes; read_place(at, place); at += block_header_bytes + place.stored)
+        if (place.kind == BlockKind::first_columns || place.kind == BlockKind::bytes) index.push_back(place);
+}
+
+bool RecordingReader::seek(std::uint64_t tick, double time) {
+    rewind();
+    if (version_ < 3) return false;  // its blocks do not say where they are
+    std::vector<BlockPlace> index;
+    const bool had = read_index(index);
+    if (!had) scan(index);
+    std::size_t best = index.size();
+    for (std::size_t i = 0; i < index.size(); ++i)
+        if (index[i].kind == BlockKind::first_columns && index[i].tick <= tick && index[i].time < time)
+            best = i;
+    if (best == index.size()) return had;
+    jumps_.push_back(index[best]);
+    for (std::size_t i = best; i-- > 0;)
+        if (index[i].kind == BlockKind::bytes) jumps_.push_back(index[i]);
+    return had;
 }
 
 }  // namespace frm::device

@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "device/recording.h"
+#include "device/recording_columns.h"
 
 namespace frm::device {
 namespace {
@@ -16,8 +16,6 @@ void put(Writer& w, const Pose& p) {
 }
 
 void put(Writer& w, const Twist& t) { w.vec3(t.linear), w.vec3(t.angular); }
-void put(Writer& w, const Wrench& v) { w.vec3(v.force), w.vec3(v.torque); }
-void put(Writer& w, const frm_vec3& v) { w.f32(v.x), w.f32(v.y), w.f32(v.z); }
 
 void put(Writer& w, const std::vector<float>& values) {
     w.u64(values.size());
@@ -58,52 +56,39 @@ struct Encode {
         put(w, e.def.pose), put(w, e.def.twist);
     }
     void operator()(const event::BodyEnd& e) const { type(EventType::body_end), w.u32(e.id); }
-    void operator()(const event::Motion& e) const {
-        type(EventType::motion);
-        w.u32(e.id), put(w, e.pose), put(w, e.twist);
-    }
-    void operator()(const event::Tick& e) const {
-        type(EventType::tick);
-        w.f32(e.dt);
-        w.u32(static_cast<std::uint32_t>(e.forces.size()));
-        for (const Forces& f : e.forces)
-            for (const Wrench* part : {&f.buoyancy, &f.pressure, &f.friction, &f.gravity, &f.total}) put(w, *part);
-        w.u8(e.has_hash);
-        if (e.has_hash) w.u64(e.hash);
-    }
     void operator()(const event::Device& e) const {
         type(EventType::device);
         w.u32(e.serial), w.f32(e.max_force), w.f32(e.max_torque);
         w.u8(static_cast<std::uint8_t>(e.name.size()));
         w.bytes(e.name.data(), e.name.size());
     }
-    void operator()(const event::Exchange& e) const {
-        type(EventType::exchange);
-        w.u32(e.device);
-        put(w, e.command.force), put(w, e.command.torque);
-        const frm_device_state& s = e.state;
-        w.u32(s.status), w.f64(s.pose.position.x), w.f64(s.pose.position.y), w.f64(s.pose.position.z);
-        w.f32(s.pose.rotation.x), w.f32(s.pose.rotation.y), w.f32(s.pose.rotation.z), w.f32(s.pose.rotation.w);
-        put(w, s.twist.linear), put(w, s.twist.angular);
-        w.f32(s.grip), w.u32(s.buttons), w.u64(s.time_ns), w.u64(s.sequence);
-    }
     void operator()(const event::End& e) const { type(EventType::end), w.u64(e.ticks); }
+    void operator()(const event::Gap& e) const { type(EventType::gap), w.u64(e.events); }
+    // These are columns.
+    void operator()(const event::Motion&) const {}
+    void operator()(const event::Tick&) const {}
+    void operator()(const event::Exchange&) const {}
 };
 
-constexpr std::uint32_t ticks_a_block = 64;
 constexpr std::size_t bytes_a_block = std::size_t{1} << 18;
+
+void put_place(Writer& w, const BlockPlace& place) {
+    w.u32(block_mark), w.u32(static_cast<std::uint32_t>(place.kind)), w.u32(place.stored), w.u32(place.raw);
+    w.u64(place.tick), w.f64(place.time);
+}
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(const char* path) : path_(path), part_(path_ + ".part") {
+RecordingWriter::RecordingWriter(const char* path)
+    : path_(path), part_(path_ + ".part"), columns_(std::make_unique<ColumnWriter>()) {
     file_ = std::fopen(part_.c_str(), "wb");
     if (!file_) throw Error(FRM_ERROR_FILE, "%s: %s", part_.c_str(), std::strerror(errno));
-    Writer w(raw_);
+    std::vector<std::uint8_t> head;
+    Writer w(head);
     w.bytes(recording_magic, sizeof recording_magic);
     w.u32(recording_version);
     w.u32(0);
-    put(raw_.data(), raw_.size());
-    raw_.clear();
+    put(head.data(), head.size());
 }
 
 RecordingWriter::~RecordingWriter() {
@@ -111,41 +96,108 @@ RecordingWriter::~RecordingWriter() {
 }
 
 void RecordingWriter::write(const Event& event) {
-    Writer w(raw_);
-    std::visit(Encode{w}, event);
-    ticks_ += std::holds_alternative<event::Tick>(event);
-    if (ticks_ == ticks_a_block || raw_.size() >= bytes_a_block) flush();
+    const bool in_columns = std::holds_alternative<event::Tick>(event) || std::holds_alternative<event::Motion>(event) ||
+                            std::holds_alternative<event::Exchange>(event);
+    if (!in_columns) {
+        if (events_ > 0) flush();
+        if (const auto* end = std::get_if<event::BodyEnd>(&event)) motions_.erase(end->id);
+        Writer w(raw_);
+        std::visit(Encode{w}, event);
+        if (raw_.size() >= bytes_a_block) flush();
+        return;
+    }
+    if (!raw_.empty()) flush();
+    if (events_ == 0 && fresh_) start_run();
+    // It is not changed: encoding only reads.
+    columns_->code(const_cast<Event&>(event));
+    ++events_;
+    if (const auto* motion = std::get_if<event::Motion>(&event)) motions_[motion->id] = *motion;
+    if (const auto* tick = std::get_if<event::Tick>(&event)) {
+        tick_ = tick->tick;
+        time_ = tick->time;
+        if (tick_ - block_tick_ >= frame_ticks || time_ - block_time_ >= frame_seconds) flush();
+    }
+    if (events_ >= frame_events || columns_->coder().size() >= bytes_a_block) flush();
+}
+
+// Whoever starts reading here knows where every body is.
+void RecordingWriter::start_run() {
+    columns_->restart();
+    run_tick_ = tick_, run_time_ = time_;
+    for (const auto& [id, motion] : motions_) {
+        Event again = motion;
+        columns_->code(again);
+        ++events_;
+    }
 }
 
 void RecordingWriter::flush() {
-    ticks_ = 0;
-    if (raw_.empty()) return;
-    stored_.resize(ZSTD_compressBound(raw_.size()));
-    ZSTD_CCtx* context = ZSTD_createCCtx();
-    if (!context) throw std::bad_alloc();
-    ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, 3);
-    ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
-    const std::size_t size = ZSTD_compress2(context, stored_.data(), stored_.size(), raw_.data(), raw_.size());
-    ZSTD_freeCCtx(context);
-    if (ZSTD_isError(size)) throw Error(FRM_ERROR_INTERNAL, "zstd: %s", ZSTD_getErrorName(size));
-    std::vector<std::uint8_t> head;
-    Writer w(head);
-    w.u32(block_mark);
-    w.u32(0);
-    w.u64(size);
-    w.u64(raw_.size());
-    put(head.data(), head.size());
-    put(stored_.data(), size);
-    if (std::fflush(file_) != 0 && failure_ == 0) failure_ = errno;
-    raw_.clear();
+    if (!raw_.empty()) {
+        stored_.resize(ZSTD_compressBound(raw_.size()));
+        ZSTD_CCtx* context = ZSTD_createCCtx();
+        if (!context) throw std::bad_alloc();
+        ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, 3);
+        ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
+        const std::size_t size = ZSTD_compress2(context, stored_.data(), stored_.size(), raw_.data(), raw_.size());
+        ZSTD_freeCCtx(context);
+        if (ZSTD_isError(size)) throw Error(FRM_ERROR_INTERNAL, "zstd: %s", ZSTD_getErrorName(size));
+        stored_.resize(size);
+        put_block(BlockKind::bytes, raw_.size(), stored_);
+        raw_.clear();
+    } else if (events_ > 0) {
+        stored_.clear();
+        columns_->coder().finish(stored_);
+        put_block(fresh_ ? BlockKind::first_columns : BlockKind::columns, events_, stored_);
+        fresh_ = tick_ - run_tick_ >= run_ticks || time_ - run_time_ >= run_seconds;
+        events_ = 0;
+    }
+    block_tick_ = tick_, block_time_ = time_;
+}
+
+void RecordingWriter::put_block(BlockKind kind, std::size_t raw, const std::vector<std::uint8_t>& contents) {
+    if (contents.size() > largest_block || raw > largest_block)
+        throw Error(FRM_ERROR_LIMIT, "%s: a block of a recording takes 2^31 bytes", path_.c_str());
+    const BlockPlace place{offset_,
+                           block_tick_,
+                           block_time_,
+                           kind,
+                           static_cast<std::uint32_t>(contents.size()),
+                           static_cast<std::uint32_t>(raw)};
+    if (kind == BlockKind::first_columns || kind == BlockKind::bytes) index_.push_back(place);
+    std::vector<std::uint8_t> block;
+    Writer w(block);
+    put_place(w, place);
+    w.u32(check_of(block.data(), block.size()));
+    w.u32(check_of(contents.data(), contents.size()));
+    w.bytes(contents.data(), contents.size());
+    put(block.data(), block.size());
+    if (failure_ == 0 && std::fflush(file_) != 0) failure_ = errno;
+}
+
+// The places from which a reader can start, and at the very end of the file where they are.
+void RecordingWriter::write_index() {
+    const std::uint64_t at = offset_;
+    std::vector<std::uint8_t> contents;
+    Writer w(contents);
+    for (const BlockPlace& place : index_)
+        w.u64(place.offset), w.u64(place.tick), w.f64(place.time), w.u64(static_cast<std::uint64_t>(place.kind));
+    put_block(BlockKind::index, index_.size(), contents);
+    std::vector<std::uint8_t> tail;
+    Writer end(tail);
+    end.u64(at);
+    end.bytes(index_magic, sizeof index_magic);
+    put(tail.data(), tail.size());
 }
 
 void RecordingWriter::put(const void* data, std::size_t size) {
+    offset_ += size;
     if (failure_ == 0 && std::fwrite(data, 1, size, file_) != size) failure_ = errno;
 }
 
 void RecordingWriter::close() {
     flush();
+    write_index();
+    if (failure_ == 0 && std::fflush(file_) != 0) failure_ = errno;
     if (std::fclose(file_) != 0 && failure_ == 0) failure_ = errno;
     file_ = nullptr;
     if (failure_ == 0 && std::rename(part_.c_str(), path_.c_str()) != 0) failure_ = errno;

@@ -16,6 +16,7 @@ public:
 
     frm_replay_info info() const { return info_; }
     frm_replay_step_result step();
+    void set_tolerance(const frm_replay_tolerance& tolerance) { tolerance_ = tolerance; }
 
     /// Handles, 0 where there is nothing now.
     std::uint64_t world() const { return world_ ? world_->handle : 0; }
@@ -49,7 +50,9 @@ private:
     void apply(const event::Device&) {}
     void apply(const event::Exchange&) {}
     void apply(const event::End&) {}
+    void apply(const event::Gap&) { gap_ = true; }
     void compare(const event::Tick& e, frm_replay_step_result& result) const;
+    bool differs(std::uint32_t body, const Wrench& now, const Wrench& then) const;
     World& the_world();
     ReplayedBody& the_body(std::uint32_t id);
 
@@ -61,7 +64,12 @@ private:
     std::vector<ReplayedMap> maps_;
     std::vector<ReplayedBody> bodies_;
     event::Tick next_tick_;  ///< all before it has been applied
-    bool has_tick_ = false, stepped_ = false;
+    bool has_tick_ = false, stepped_ = false, gap_ = false;
+    frm_replay_tolerance tolerance_{};
+    struct Peak {
+        float force = 0, torque = 0;
+    };
+    std::vector<Peak> peaks_;  ///< of the total on each body, by its id
 };
 
 }  // namespace frm::device

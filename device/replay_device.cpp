@@ -1,10 +1,11 @@
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <vector>
 
 #include "core/error.h"
 #include "device/device.h"
-#include "device/recording.h"
+#include "device/recording_columns.h"
 
 namespace frm::device {
 namespace {
@@ -12,8 +13,16 @@ namespace {
 struct ReplayDevice {
     event::Device device;
     std::vector<frm_device_state> states;
+    std::vector<std::vector<std::uint8_t>> packets;
     std::size_t next = 0;
 };
+
+/// Between two exchanges whose wrenches were kept, the wrench achieved stays as it was.
+void keep_achieved(const frm_device_state& before, frm_device_state& now) {
+    constexpr std::size_t size = std::min<std::size_t>(sizeof now - named_state_bytes, 4 * achieved_words);
+    std::memcpy(reinterpret_cast<unsigned char*>(&now) + named_state_bytes,
+                reinterpret_cast<const unsigned char*>(&before) + named_state_bytes, size);
+}
 
 std::unique_ptr<ReplayDevice> read(const ReplaySource& source) {
     RecordingReader reader(source.path);
@@ -28,7 +37,13 @@ std::unique_ptr<ReplayDevice> read(const ReplaySource& source) {
         } else if (const auto* device = std::get_if<event::Device>(&e)) {
             if (devices++ == source.device) out->device = *device;
         } else if (const auto* exchange = std::get_if<event::Exchange>(&e)) {
-            if (exchange->device == source.device) out->states.push_back(exchange->state);
+            if (exchange->device != source.device) continue;
+            frm_device_state state = exchange->state;
+            if (!exchange->has_wrenches && !out->states.empty()) keep_achieved(out->states.back(), state);
+            out->states.push_back(state);
+            out->packets.push_back(exchange->raw);
+        } else if (std::holds_alternative<event::Gap>(e)) {
+            break;
         }
     }
     if (source.device >= devices)
@@ -73,11 +88,20 @@ frm_status FRM_CALL exchange(void*, void* instance, const frm_device_command*, f
 
 frm_status FRM_CALL stop(void*, void*) { return FRM_OK; }
 
+frm_status FRM_CALL raw(void*, void* instance, std::uint8_t* data, std::uint32_t capacity, std::uint32_t* size) {
+    const auto& device = *static_cast<ReplayDevice*>(instance);
+    if (device.next == 0) return FRM_OK;
+    const std::vector<std::uint8_t>& packet = device.packets[device.next - 1];
+    *size = std::min(capacity, static_cast<std::uint32_t>(packet.size()));
+    std::copy_n(packet.begin(), *size, data);
+    return FRM_OK;
+}
+
 }  // namespace
 
 const frm_device_driver& replay_driver() {
     static const frm_device_driver driver{
-        sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop};
+        sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop, raw};
     return driver;
 }
 

@@ -603,6 +603,9 @@ typedef struct frm_device_driver {
                                    frm_device_state *state);
     /* Safe state at once: no force. */
     frm_status(FRM_CALL *stop)(void *user, void *instance);
+    /* What the last exchange read from the device, byte for byte: at most `capacity` (up to 512) bytes of it to data, and
+     * their number to *size. Bounded time, no allocation. May be null: such a device has no packets. */
+    frm_status(FRM_CALL *raw)(void *user, void *instance, uint8_t *data, uint32_t capacity, uint32_t *size);
 } frm_device_driver;
 
 /* The number of devices that a driver sees, and what they are: two-call rule; a capacity below the number fills what
@@ -639,6 +642,11 @@ FRM_API frm_status FRM_CALL frm_device_calibrate(frm_device device);
 FRM_API frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_device_command *command,
                                                 frm_device_state *state);
 
+/* The packet that the last exchange read, as the driver gives it (at most 512 bytes), or as it was recorded: two-call
+ * rule; *size receives its length, 0 where there is none; data may be null; `capacity` below the length:
+ * FRM_ERROR_CAPACITY. [realtime] */
+FRM_API frm_status FRM_CALL frm_device_get_raw(frm_device device, uint8_t *data, uint32_t capacity, uint32_t *size);
+
 /* Safe state at once. [realtime] */
 FRM_API frm_status FRM_CALL frm_device_stop(frm_device device);
 
@@ -646,8 +654,27 @@ FRM_API frm_status FRM_CALL frm_device_stop(frm_device device);
 
 typedef struct frm_recorder_def {
     uint32_t struct_size;
-    uint32_t hash_interval; /* ticks between two recorded hashes of the whole world, 1 to 1e6; default 100 */
+    uint32_t hash_interval; /* ticks between two recorded hashes of the whole world, 1 to 1e6; default 100. It is
+                               worked out within the tick, in proportion to the water's cells */
+    uint32_t queue_bytes;   /* of memory between the calls that are recorded and the thread that writes, 2^16 to 2^30,
+                               rounded up to a power of two; default 2^22: seconds of one body and device at 1 kHz */
+    uint32_t waits;         /* what happens where that is full. 0 (default): the event is lost, counted, and the gap
+                               marked in the recording. 1: the call waits until there is room, for work offline */
+    uint32_t force_interval; /* ticks between two whose forces are kept, and exchanges between two whose wrenches
+                                (commanded, achieved) are, 1 to 1e6; default 1: all. What a tick reads, and of each tick
+                                a check of every part of the forces, are kept always: a replay finds the first tick that
+                                differs. At 1 kHz 16 makes a third less: forces on what a hand moves are mostly noise */
 } frm_recorder_def;
+
+typedef struct frm_recorder_stats {
+    uint32_t struct_size;
+    uint32_t reserved;
+    uint64_t ticks;       /* of the world that the writer has taken */
+    uint64_t lost_events; /* for which there was no room; 0 is good */
+    uint64_t file_bytes;  /* written so far */
+    uint64_t queue_bytes; /* there are */
+    uint64_t queue_most;  /* the most that were waiting at a time, bytes */
+} frm_recorder_stats;
 
 typedef struct frm_replay_info {
     uint32_t struct_size;
@@ -658,7 +685,17 @@ typedef struct frm_replay_info {
     uint32_t devices;
     uint32_t has_water;
     uint32_t maps;
+    uint64_t lost_events; /* missing where the replay ends: the recorder's queue was full; 0: none */
 } frm_replay_info;
+
+/* How far a result may be off, as one version's is from another's: the length of the difference of two forces, or two
+ * torques. All 0 (default): not by a bit. */
+typedef struct frm_replay_tolerance {
+    uint32_t struct_size;
+    float relative; /* as a share of the largest total force (or torque) on that body in the whole recording, 0 to 1 */
+    float force;    /* N, added to that, 0 to 1e9 */
+    float torque;   /* N m, likewise */
+} frm_replay_tolerance;
 
 /* What a replay compares, in the order in which it compares. */
 typedef enum frm_part {
@@ -677,6 +714,12 @@ typedef struct frm_replay_step_result {
     uint64_t tick;     /* of the world after this step; the first tick is 1 */
     uint32_t body;     /* the first that differs, in order of creation */
     uint32_t part;     /* frm_part, the first that differs */
+    double time;       /* of the world after this step, s */
+    uint32_t component; /* of that part's wrench, the one that is furthest off: 0 to 2 force x, y, z, 3 to 5 torque x, y, z;
+                           in the replay's axes, as `recorded` and `replayed` */
+    float recorded;    /* N or N m; 0 for FRM_PART_WORLD; NaN in a tick of which only the check was kept */
+    float replayed;
+    uint32_t reserved;
 } frm_replay_step_result;
 
 /* Fills a def with defaults; writes at most `size` bytes. [any] */
@@ -685,17 +728,21 @@ FRM_API frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def *def, uint64_
 /* Records what a world is told and what it answers, from now until closed; the maps are kept inside the recording.
  * The world must not have ticked yet (FRM_ERROR_STATE) and takes one recorder. def may be null. The recording grows
  * as `path`.part and gets its name when it is closed; if the process dies, the .part file is still a recording that
- * lacks at most its last 64 ticks. An existing file is replaced on closing, an older .part file at once: move it away
- * first. While a recorder is open, frm_world_tick, frm_body_set_motion and frm_device_exchange may allocate, write a
- * block every 64 ticks, and hash the world every hash_interval ticks. path is UTF-8. [offline] */
+ * lacks at most its last frame: 40 ms of the world's time (128 ticks, 4096 events), and what a thread that looks every
+ * 5 ms had not taken yet. An existing file is replaced on closing, an older .part file at once: move it away first.
+ * Recording starts that thread; calls that are [realtime] stay so, unless def.waits is set. path is UTF-8. [offline] */
 FRM_API frm_status FRM_CALL frm_recorder_create(frm_world world, const char *path, const frm_recorder_def *def,
                                                 frm_recorder *recorder);
 
 /* Records every exchange of this device too. At most 16. [owner] */
 FRM_API frm_status FRM_CALL frm_recorder_add_device(frm_recorder recorder, frm_device device);
 
+/* How it goes. [realtime] */
+FRM_API frm_status FRM_CALL frm_recorder_get_stats(frm_recorder recorder, frm_recorder_stats *stats);
+
 /* Writes what is left and gives the file its name. A write that failed since the start (disk full) is reported
- * here: FRM_ERROR_FILE, and the .part file is left. The handle is stale afterwards in any case. [owner] */
+ * here: FRM_ERROR_FILE, and the .part file is left. FRM_ERROR_CAPACITY: events were lost, for which the queue had no
+ * room; the file has its name, and replays up to the gap. The handle is stale afterwards in any case. [owner] */
 FRM_API frm_status FRM_CALL frm_recorder_close(frm_recorder recorder);
 
 /* Opens a recording and makes a world of its own to replay it in, in this context's axes whatever the recording's
@@ -708,7 +755,12 @@ FRM_API frm_status FRM_CALL frm_replay_close(frm_replay replay);
 /* What the recording holds. [owner] */
 FRM_API frm_status FRM_CALL frm_replay_get_info(frm_replay replay, frm_replay_info *info);
 
-/* Replays up to and including the next tick and compares bit for bit. After the last tick: FRM_ERROR_END. A
+/* How far what is compared may be off from the next step on; null: not by a bit. With a tolerance the hash is not
+ * compared. [owner] */
+FRM_API frm_status FRM_CALL frm_replay_set_tolerance(frm_replay replay, const frm_replay_tolerance *tolerance);
+
+/* Replays up to and including the next tick and compares bit for bit, or within the tolerance. After the last tick, and
+ * where events were lost: FRM_ERROR_END. A
  * difference is not an error: it is reported, and the replay can go on. [owner] */
 FRM_API frm_status FRM_CALL frm_replay_step(frm_replay replay, frm_replay_step_result *result);
 

@@ -13,7 +13,7 @@ from conftest import ROOT
 import frm
 from frm import _abi
 
-NUMBERS = {"uint32_t": ctypes.c_uint32, "uint64_t": ctypes.c_uint64, "int32_t": ctypes.c_int32,
+NUMBERS = {"uint8_t": ctypes.c_uint8, "uint32_t": ctypes.c_uint32, "uint64_t": ctypes.c_uint64, "int32_t": ctypes.c_int32,
            "float": ctypes.c_float, "double": ctypes.c_double}
 # `const char *` is text that goes in; `char *` is a buffer that the library fills.
 TEXTS = {"const char *": ctypes.c_char_p, "char *": POINTER(ctypes.c_char), "void *": ctypes.c_void_p,

@@ -23,7 +23,7 @@ Calls release Python's lock. The header's thread tags hold: one thread at a time
 from ._abi import (VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH, AllocateFn, Axes, BodyDef, BodyState, Border,
                    ContextDef, DeviceCommand, DeviceDriver, DeviceInfo, DeviceState, DeviceStatus, Forces,
                    FreeFn, LogLevel, MapInfo, MapSource, Model, Part, Pose, Position, Quaternion, RecorderDef,
-                   ReplayInfo, ReplayStepResult, Skip, SourceState, Status, Surface, Twist, Vec3, WaterDef,
+                   RecorderStats, ReplayInfo, ReplayStepResult, ReplayTolerance, Skip, SourceState, Status, Surface, Twist, Vec3, WaterDef,
                    WaterState, WorldDef, WorldStats, Wrench)
 from . import _abi
 from ._base import Context, Error, Object, version

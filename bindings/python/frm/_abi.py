@@ -6,7 +6,7 @@ Names follow one rule, which tests/python/test_parity.py enforces: an enum or st
 """
 from __future__ import annotations
 
-from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint32,
+from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint8, c_uint32,
                     c_uint64, c_void_p, sizeof)
 from enum import IntEnum
 
@@ -283,18 +283,30 @@ class DeviceDriver(Struct):
         ("calibrate", CFUNCTYPE(frm_status, c_void_p, c_void_p)),
         ("exchange", CFUNCTYPE(frm_status, c_void_p, c_void_p, POINTER(DeviceCommand), POINTER(DeviceState))),
         ("stop", CFUNCTYPE(frm_status, c_void_p, c_void_p)),
+        ("raw", CFUNCTYPE(frm_status, c_void_p, c_void_p, POINTER(c_uint8), c_uint32, POINTER(c_uint32))),
     ]
 
 
 # ---- Recorder and replay -----------------------------------------------------------------------------------
 
 class RecorderDef(Struct):
-    _fields_ = [("struct_size", c_uint32), ("hash_interval", c_uint32)]
+    _fields_ = [("struct_size", c_uint32), ("hash_interval", c_uint32), ("queue_bytes", c_uint32),
+                ("waits", c_uint32), ("force_interval", c_uint32)]
+
+
+class RecorderStats(Struct):
+    _fields_ = [("struct_size", c_uint32), ("reserved", c_uint32), ("ticks", c_uint64), ("lost_events", c_uint64),
+                ("file_bytes", c_uint64), ("queue_bytes", c_uint64), ("queue_most", c_uint64)]
 
 
 class ReplayInfo(Struct):
     _fields_ = [("struct_size", c_uint32), ("torn", c_uint32), ("ticks", c_uint64), ("time", c_double),
-                ("bodies", c_uint32), ("devices", c_uint32), ("has_water", c_uint32), ("maps", c_uint32)]
+                ("bodies", c_uint32), ("devices", c_uint32), ("has_water", c_uint32), ("maps", c_uint32),
+                ("lost_events", c_uint64)]
+
+
+class ReplayTolerance(Struct):
+    _fields_ = [("struct_size", c_uint32), ("relative", c_float), ("force", c_float), ("torque", c_float)]
 
 
 class Part(IntEnum):
@@ -309,7 +321,8 @@ class Part(IntEnum):
 
 class ReplayStepResult(Struct):
     _fields_ = [("struct_size", c_uint32), ("diverged", c_uint32), ("tick", c_uint64), ("body", c_uint32),
-                ("part", c_uint32)]
+                ("part", c_uint32), ("time", c_double), ("component", c_uint32), ("recorded", c_float),
+                ("replayed", c_float), ("reserved", c_uint32)]
 
 
 # ---- The tables --------------------------------------------------------------------------------------------
@@ -318,7 +331,8 @@ ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, Par
 
 STRUCTS = (Vec3, Position, Quaternion, Pose, Twist, Wrench, ContextDef, MapInfo, MapSource, WorldDef,
            WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, SourceState, DeviceInfo,
-           DeviceCommand, DeviceState, DeviceDriver, RecorderDef, ReplayInfo, ReplayStepResult)
+           DeviceCommand, DeviceState, DeviceDriver, RecorderDef, RecorderStats, ReplayInfo, ReplayTolerance,
+           ReplayStepResult)
 
 _text = POINTER(c_char)
 _u32 = POINTER(c_uint32)
@@ -381,15 +395,18 @@ FUNCTIONS = {
     "frm_device_get_info": (frm_status, (frm_device, POINTER(DeviceInfo))),
     "frm_device_calibrate": (frm_status, (frm_device,)),
     "frm_device_exchange": (frm_status, (frm_device, POINTER(DeviceCommand), POINTER(DeviceState))),
+    "frm_device_get_raw": (frm_status, (frm_device, POINTER(c_uint8), c_uint32, _u32)),
     "frm_device_stop": (frm_status, (frm_device,)),
 
     "frm_recorder_def_init": (frm_status, (POINTER(RecorderDef), c_uint64)),
     "frm_recorder_create": (frm_status, (frm_world, c_char_p, POINTER(RecorderDef), _handle)),
     "frm_recorder_add_device": (frm_status, (frm_recorder, frm_device)),
+    "frm_recorder_get_stats": (frm_status, (frm_recorder, POINTER(RecorderStats))),
     "frm_recorder_close": (frm_status, (frm_recorder,)),
     "frm_replay_open": (frm_status, (frm_context, c_char_p, _handle)),
     "frm_replay_close": (frm_status, (frm_replay,)),
     "frm_replay_get_info": (frm_status, (frm_replay, POINTER(ReplayInfo))),
+    "frm_replay_set_tolerance": (frm_status, (frm_replay, POINTER(ReplayTolerance))),
     "frm_replay_step": (frm_status, (frm_replay, POINTER(ReplayStepResult))),
     "frm_replay_get_world": (frm_status, (frm_replay, _handle)),
     "frm_replay_get_water": (frm_status, (frm_replay, _handle)),

@@ -1,7 +1,7 @@
 """Devices, opened by a driver in C or in Python."""
 from __future__ import annotations
 
-from ctypes import byref, c_uint32, sizeof
+from ctypes import byref, c_uint8, c_uint32, sizeof
 
 from . import _abi
 from ._abi import DeviceCommand, DeviceDriver, DeviceInfo, DeviceState, Wrench
@@ -79,6 +79,13 @@ class Device(Object):
         with _exceptions_of(self._driver):
             self._check(self._lib.frm_device_exchange(self.handle, command, byref(state)))
         return state
+
+    def raw(self) -> bytes:
+        """The packet that the last exchange read; empty where the driver gives none."""
+        packet, size = (c_uint8 * 512)(), c_uint32()
+        with _exceptions_of(self._driver):
+            self._check(self._lib.frm_device_get_raw(self.handle, packet, len(packet), byref(size)))
+        return bytes(packet[:size.value])
 
     def stop(self) -> None:
         """Safe state at once."""

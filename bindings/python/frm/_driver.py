@@ -41,6 +41,10 @@ class Driver:
     def stop(self, instance) -> None:
         """Safe state at once: no force."""
 
+    def raw(self, instance) -> bytes:
+        """The packet of the last exchange, at most 512 bytes; empty where there is none."""
+        return b""
+
     # The rest is the table that the library calls. Instances are numbered, because C keeps only a pointer.
 
     @property
@@ -98,6 +102,11 @@ class Driver:
 
     def _c_stop(self, instance):
         self.stop(self._instances[instance])
+
+    def _c_raw(self, instance, data, capacity, size):
+        packet = bytes(self.raw(self._instances[instance]))[:capacity]
+        ctypes.memmove(data, packet, len(packet))
+        size[0] = len(packet)
 
 
 def _fill(target: DeviceInfo, info: DeviceInfo) -> None:

@@ -4,14 +4,17 @@ from __future__ import annotations
 from ctypes import byref
 from typing import Iterator
 
-from ._abi import RecorderDef, ReplayInfo, ReplayStepResult, Status
+from ._abi import RecorderDef, RecorderStats, ReplayInfo, ReplayStepResult, ReplayTolerance, Status
 from ._base import Context, Error, Object, definition_of, utf8, wrap
 from ._device import Device
 from ._world import Body, Map, Water, World
 
 
 class Recorder(Object):
-    """Records what a world is told and what it answers. Option: hash_interval (ticks)."""
+    """Records what a world is told and what it answers.
+
+    Options: hash_interval and force_interval (ticks), queue_bytes, waits (True: lose nothing, and let calls wait).
+    """
 
     _close_function = "frm_recorder_close"
 
@@ -25,8 +28,13 @@ class Recorder(Object):
         """Records every exchange of this device too."""
         self._check(self._lib.frm_recorder_add_device(self.handle, device.handle))
 
+    def stats(self) -> RecorderStats:
+        """How it goes: ticks, bytes, and events that were lost."""
+        return self._filled(RecorderStats, self._lib.frm_recorder_get_stats)
+
     def close(self) -> None:
-        """Writes what is left and gives the file its name; an Error if a write failed since the start."""
+        """Writes what is left and gives the file its name; an Error if a write failed since the start, or if events
+        were lost."""
         try:
             super().close()
         finally:
@@ -44,6 +52,13 @@ class Replay(Object):
     def info(self) -> ReplayInfo:
         """What the recording holds; time in s."""
         return self._filled(ReplayInfo, self._lib.frm_replay_get_info)
+
+    def set_tolerance(self, relative: float = 0, force: float = 0, torque: float = 0) -> None:
+        """How far a result may be off: relative to the body's largest force (torque) in the recording, and in N and
+        N m besides. All 0: not by a bit."""
+        tolerance = ReplayTolerance.sized()
+        tolerance.relative, tolerance.force, tolerance.torque = relative, force, torque
+        self._check(self._lib.frm_replay_set_tolerance(self.handle, byref(tolerance)))
 
     def step(self) -> ReplayStepResult:
         """Replays the next tick; after the last an Error with the status ERROR_END."""

@@ -75,6 +75,18 @@ static frm_status FRM_CALL driver_stop(void *user, void *instance) {
     return ((driver_log *)user)->answer;
 }
 
+/* Three bytes, the first of which counts. */
+static frm_status FRM_CALL driver_raw(void *user, void *instance, uint8_t *data, uint32_t capacity, uint32_t *size) {
+    const driver_log *log = (const driver_log *)user;
+    (void)instance;
+    if (capacity < 3) return FRM_ERROR_CAPACITY;
+    data[0] = (uint8_t)log->exchanged;
+    data[1] = 0xAB;
+    data[2] = 0;
+    *size = 3;
+    return log->answer;
+}
+
 static frm_device_driver make_driver(void) {
     frm_device_driver driver;
     memset(&driver, 0, sizeof driver);
@@ -172,6 +184,38 @@ static void bad_drivers(void) {
     CHECK(count == 42); /* results are written only on success, whatever the driver wrote */
 }
 
+/* A driver may have packets, or not; one of an older header has no place for them. */
+static void packets(frm_device null_device_handle, frm_device stale) {
+    driver_log log;
+    frm_device_driver driver = make_driver();
+    frm_device device = 0;
+    frm_device_state state = {sizeof state};
+    uint8_t data[3] = {9, 9, 9};
+    uint32_t size = 42;
+    memset(&log, 0, sizeof log);
+    OK(frm_device_get_raw(null_device_handle, data, sizeof data, &size));
+    CHECK(size == 0 && data[0] == 9);
+    driver.raw = driver_raw;
+    OK(frm_device_open(f.context, &driver, &log, 0, &device));
+    OK(frm_device_exchange(device, NULL, &state));
+    OK(frm_device_get_raw(device, NULL, 0, &size));
+    CHECK(size == 3);
+    REFUSED(FRM_ERROR_CAPACITY, "3", frm_device_get_raw(device, data, 2, &size));
+    CHECK(size == 3 && data[0] == 9);
+    OK(frm_device_get_raw(device, data, 3, &size));
+    CHECK(data[0] == 1 && data[1] == 0xAB && data[2] == 0);
+    REFUSED(FRM_ERROR_ARGUMENT, "size", frm_device_get_raw(device, data, 3, NULL));
+    REFUSED_HANDLES(stale, f.world, frm_device_get_raw(h, data, 3, &size));
+    OK(frm_device_close(device));
+
+    driver.struct_size = (uint32_t)offsetof(frm_device_driver, raw);
+    OK(frm_device_open(f.context, &driver, &log, 0, &device));
+    OK(frm_device_exchange(device, NULL, &state));
+    OK(frm_device_get_raw(device, data, 3, &size));
+    CHECK(size == 0);
+    OK(frm_device_close(device));
+}
+
 static void own_driver(frm_device stale) {
     driver_log log;
     frm_device_driver driver = make_driver();
@@ -253,6 +297,12 @@ void call_device(void) {
     frm_device stale = 0;
     null_device(&stale);
     bad_drivers();
+    {
+        frm_device device = 0;
+        OK(frm_device_open_null(f.context, &device));
+        packets(device, stale);
+        OK(frm_device_close(device));
+    }
     own_driver(stale);
     closed_with_the_context();
 }

@@ -29,6 +29,40 @@ static frm_status use(const void *def) {
 static frm_status fill_info(void *info) { return frm_replay_get_info(filled, (frm_replay_info *)info); }
 static frm_status fill_step(void *result) { return frm_replay_step(filled, (frm_replay_step_result *)result); }
 
+static frm_recorder recorded; /* the recorder of check_filled */
+static frm_status fill_stats(void *stats) { return frm_recorder_get_stats(recorded, (frm_recorder_stats *)stats); }
+static frm_status init_tolerance(void *def, uint64_t size) {
+    memset(def, 0, (size_t)size);
+    if (size < 4) return FRM_ERROR_ARGUMENT;
+    *(uint32_t *)def = (uint32_t)size;
+    return FRM_OK;
+}
+
+static void tolerances(frm_replay replay) {
+    const float bad[] = {-1e-6f, 2e9f, not_a_number, infinity_f};
+    frm_replay_tolerance t;
+    size_t i;
+    OK(frm_replay_set_tolerance(replay, NULL));
+    for (i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
+        OK(init_tolerance(&t, sizeof t));
+        t.relative = bad[i];
+        REFUSED(FRM_ERROR_ARGUMENT, "relative", frm_replay_set_tolerance(replay, &t));
+        OK(init_tolerance(&t, sizeof t));
+        t.force = bad[i];
+        REFUSED(FRM_ERROR_ARGUMENT, "force", frm_replay_set_tolerance(replay, &t));
+        OK(init_tolerance(&t, sizeof t));
+        t.torque = bad[i];
+        REFUSED(FRM_ERROR_ARGUMENT, "torque", frm_replay_set_tolerance(replay, &t));
+    }
+    t.struct_size = 0;
+    CHECK(frm_replay_set_tolerance(replay, &t) < 0);
+    OK(init_tolerance(&t, sizeof t));
+    t.relative = 1e-6f;
+    OK(frm_replay_set_tolerance(replay, &t));
+    OK(frm_replay_set_tolerance(replay, NULL));
+    REFUSED_HANDLES(f.stale_body, f.world, frm_replay_set_tolerance(h, &t));
+}
+
 static int exists(const char *name) {
     FILE *file = fopen(name, "rb");
     if (file) fclose(file);
@@ -42,10 +76,21 @@ static void bad_defs(void) {
     frm_world world;
     size_t i;
     OK(init(&def, sizeof def));
-    CHECK(def.hash_interval == 100);
+    CHECK(def.hash_interval == 100 && def.queue_bytes == 1u << 22 && def.waits == 0 && def.force_interval == 1);
     for (i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
         def.hash_interval = bad[i];
         REFUSED(FRM_ERROR_ARGUMENT, "hash_interval", use(&def));
+    }
+    for (i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
+        OK(init(&def, sizeof def));
+        def.force_interval = bad[i];
+        REFUSED(FRM_ERROR_ARGUMENT, "force_interval", use(&def));
+        OK(init(&def, sizeof def));
+        def.queue_bytes = i == 1 ? 65535 : bad[i];
+        REFUSED(FRM_ERROR_ARGUMENT, "queue_bytes", use(&def));
+        OK(init(&def, sizeof def));
+        def.waits = i + 2;
+        REFUSED(FRM_ERROR_ARGUMENT, "waits", use(&def));
     }
     REFUSED(FRM_ERROR_STATE, NULL, frm_recorder_create(f.world, path, NULL, &recorder)); /* has ticked */
     REFUSED_HANDLES(f.stale_world, f.context, frm_recorder_create(h, path, NULL, &recorder));
@@ -95,6 +140,16 @@ static uint64_t record(frm_recorder *stale) {
     OK(frm_world_hash(world, &hash));
     REFUSED(FRM_ERROR_STATE, NULL, frm_world_destroy(world));
     CHECK(!exists(path));
+    {
+        frm_recorder_stats stats = {sizeof stats};
+        OK(frm_recorder_get_stats(recorder, &stats));
+        CHECK(stats.ticks <= TICKS && stats.lost_events == 0 && stats.queue_bytes == 1u << 22);
+        CHECK(stats.file_bytes > 0 && stats.queue_most > 0 && stats.queue_most <= stats.queue_bytes);
+        REFUSED(FRM_ERROR_ARGUMENT, "stats", frm_recorder_get_stats(recorder, NULL));
+        REFUSED_HANDLES(f.stale_body, f.world, frm_recorder_get_stats(h, &stats));
+        recorded = recorder;
+        check_filled("frm_recorder_stats", sizeof(frm_recorder_stats), fill_stats);
+    }
     OK(frm_recorder_close(recorder));
     CHECK(exists(path));
     EXPECT(FRM_ERROR_HANDLE, frm_recorder_close(recorder));
@@ -132,9 +187,11 @@ static void replay_all(uint64_t hash) {
     int tick;
     OK(frm_replay_open(f.context, path, &replay));
     what_it_holds(replay);
+    tolerances(replay);
     for (tick = 1; tick <= TICKS; ++tick) {
         OK(frm_replay_step(replay, &result));
         CHECK(result.diverged == 0 && result.tick == (uint64_t)tick && result.part == FRM_PART_NONE);
+        CHECK(result.time > 0.00199 * tick && result.time < 0.00201 * tick);
     }
     OK(frm_replay_get_world(replay, &world));
     OK(frm_world_hash(world, &replayed));
@@ -214,8 +271,11 @@ static void device_of_the_recording(void) {
     int exchange;
     OK(frm_device_open_replay(f.context, path, 0, &device));
     for (exchange = 0; exchange < TICKS; ++exchange) {
+        uint32_t size = 42;
         OK(frm_device_exchange(device, NULL, &state));
         CHECK(state.sequence == (uint64_t)exchange && state.pose.rotation.w == 1.0f);
+        OK(frm_device_get_raw(device, NULL, 0, &size));
+        CHECK(size == 0);
     }
     REFUSED(FRM_ERROR_END, NULL, frm_device_exchange(device, NULL, &state));
     CHECK(state.sequence == TICKS - 1);
