@@ -24,7 +24,8 @@ public:
         const double t = dt * static_cast<double>(cycles_);
         double value[6];
         for (std::size_t i = 0; i < 6; ++i) {
-            const double slow = i < 3 ? 0.08 : 0.4, tremor = i < 3 ? 1e-4 : 2e-3, f = 0.3 + 0.11 * static_cast<double>(i);
+            const double slow = i < 3 ? 0.08 : 0.4, tremor = i < 3 ? 1e-4 : 2e-3,
+                         f = 0.3 + 0.11 * static_cast<double>(i);
             value[i] = slow * (std::sin(6.28 * f * t) + 0.4 * std::sin(6.28 * 2.3 * f * t + 1)) +
                        tremor * std::sin(6.28 * (8 + static_cast<double>(i)) * t);
         }
@@ -39,12 +40,14 @@ public:
         }
         state.status = FRM_DEVICE_READY;
         state.pose.position = {measured_[0], measured_[1], measured_[2]};
-        const double angle = std::sqrt(measured_[3] * measured_[3] + measured_[4] * measured_[4] + measured_[5] * measured_[5]);
+        const double angle =
+            std::sqrt(measured_[3] * measured_[3] + measured_[4] * measured_[4] + measured_[5] * measured_[5]);
         const double s = angle > 1e-9 ? std::sin(angle / 2) / angle : 0.5;
         state.pose.rotation = {static_cast<float>(s * measured_[3]), static_cast<float>(s * measured_[4]),
                                static_cast<float>(s * measured_[5]), static_cast<float>(std::cos(angle / 2))};
         state.twist.linear = {static_cast<float>(rate_[0]), static_cast<float>(rate_[1]), static_cast<float>(rate_[2])};
-        state.twist.angular = {static_cast<float>(rate_[3]), static_cast<float>(rate_[4]), static_cast<float>(rate_[5])};
+        state.twist.angular = {static_cast<float>(rate_[3]), static_cast<float>(rate_[4]),
+                               static_cast<float>(rate_[5])};
         state.sequence = cycles_;
         state.time_ns = 1'000'000 * cycles_ + static_cast<std::uint64_t>(400 * (1 + noise()));
         put_force(command.wrench);
@@ -224,7 +227,7 @@ RecordCost measure_recording(const std::vector<std::uint8_t>& map_file, double s
         scene.close();
         cost.kb_per_s = (static_cast<double>(std::filesystem::file_size(path)) - before) / 1e3 / (dt * ticks);
     }
-    if (!getenv("KEEP")) std::filesystem::remove(path);
+    std::filesystem::remove(path);
     return cost;
 }
 

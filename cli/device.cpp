@@ -105,22 +105,22 @@ void print(const Options& o, const frm_device_state& s) {
             {"buttons", s.buttons}};
         std::printf("%s\n", j.dump().c_str());
     } else {
-        std::printf("%8llu  %-12s  position %8.4f %8.4f %8.4f m  rotation %7.4f %7.4f %7.4f %7.4f  speed %.3f m/s  "
-                    "grip %.2f  buttons %x\n",
-                    static_cast<unsigned long long>(s.sequence), status_name(s.status), s.pose.position.x,
-                    s.pose.position.y, s.pose.position.z, static_cast<double>(s.pose.rotation.x),
-                    static_cast<double>(s.pose.rotation.y), static_cast<double>(s.pose.rotation.z),
-                    static_cast<double>(s.pose.rotation.w),
-                    std::sqrt(static_cast<double>(s.twist.linear.x * s.twist.linear.x +
-                                                  s.twist.linear.y * s.twist.linear.y +
-                                                  s.twist.linear.z * s.twist.linear.z)),
-                    static_cast<double>(s.grip), s.buttons);
+        std::printf(
+            "%8llu  %-12s  position %8.4f %8.4f %8.4f m  rotation %7.4f %7.4f %7.4f %7.4f  speed %.3f m/s  "
+            "grip %.2f  buttons %x\n",
+            static_cast<unsigned long long>(s.sequence), status_name(s.status), s.pose.position.x, s.pose.position.y,
+            s.pose.position.z, static_cast<double>(s.pose.rotation.x), static_cast<double>(s.pose.rotation.y),
+            static_cast<double>(s.pose.rotation.z), static_cast<double>(s.pose.rotation.w),
+            std::sqrt(static_cast<double>(s.twist.linear.x * s.twist.linear.x + s.twist.linear.y * s.twist.linear.y +
+                                          s.twist.linear.z * s.twist.linear.z)),
+            static_cast<double>(s.grip), s.buttons);
     }
     std::fflush(stdout);
 }
 
 std::uint64_t cycles_of(const Options& o) {
-    return o.seconds > 0 ? static_cast<std::uint64_t>(std::max(1.0, std::round(o.seconds * o.rate))) : ~std::uint64_t{0};
+    return o.seconds > 0 ? static_cast<std::uint64_t>(std::max(1.0, std::round(o.seconds * o.rate)))
+                         : ~std::uint64_t{0};
 }
 
 void monitor(const Options& o) {
@@ -208,10 +208,10 @@ void record(const Options& o) {
     recording.close();
     if (o.json)
         std::printf("%s\n", nlohmann::ordered_json{{"recording", o.output},
-                                                  {"cycles", n},
-                                                  {"seconds", static_cast<double>(n) / o.rate},
-                                                  {"late_cycles", late},
-                                                  {"lost_events", stats.lost_events}}
+                                                   {"cycles", n},
+                                                   {"seconds", static_cast<double>(n) / o.rate},
+                                                   {"late_cycles", late},
+                                                   {"lost_events", stats.lost_events}}
                                 .dump(2)
                                 .c_str());
     else
@@ -258,7 +258,8 @@ void add_device(CLI::App& app) {
     one->add_option("DEVICE", o->device, "of this driver alone: null, replay:FILE")->check(not_empty())->type_name("");
 
     o = make();
-    one = add(*command, "monitor", "Shows where the grip is, without any force; --json: a line of JSON each.", o, monitor);
+    one = add(*command, "monitor", "Shows where the grip is, without any force; --json: a line of JSON each.", o,
+              monitor);
     add_device_options(*one, *o);
     add_rate(*one, *o, 10);
 

@@ -94,9 +94,9 @@ public:
         if (const auto* body = std::get_if<device::event::Body>(&e))
             bodies_.push_back({body->id, body->def.pose, body->def.twist});
         if (const auto* end = std::get_if<device::event::BodyEnd>(&e))
-            bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(),
-                                         [&](const KnownBody& b) { return b.id == end->id; }),
-                          bodies_.end());
+            bodies_.erase(
+                std::remove_if(bodies_.begin(), bodies_.end(), [&](const KnownBody& b) { return b.id == end->id; }),
+                bodies_.end());
         if (const auto* m = std::get_if<device::event::Motion>(&e))
             for (KnownBody& b : bodies_)
                 if (b.id == m->id) b.pose = m->pose, b.twist = m->twist;
@@ -123,7 +123,8 @@ private:
         tick_ = e.tick, time_ = e.time;
         if (!wanted || !ticks_) return true;
         const std::size_t bodies = std::max(e.forces.size(), e.checks.size());
-        if (bodies != bodies_.size()) throw Failure("tick " + std::to_string(e.tick) + ": its bodies are not those there");
+        if (bodies != bodies_.size())
+            throw Failure("tick " + std::to_string(e.tick) + ": its bodies are not those there");
         for (std::size_t i = 0; i < bodies; ++i) {
             Row row;
             row.whole(e.tick), row.number(e.time), row.number(e.dt), row.whole(bodies_[i].id);

@@ -78,8 +78,9 @@ std::string text_of(const frm_replay_step_result& r) {
     if (r.part == FRM_PART_WORLD || n < 0) return text;
     const auto at = static_cast<std::size_t>(n);
     if (std::isfinite(r.recorded))
-        std::snprintf(text + at, sizeof text - at, " %s: recorded %.9g, replayed %.9g (%s)", component_name(r.component),
-                      static_cast<double>(r.recorded), static_cast<double>(r.replayed), r.component < 3 ? "N" : "N m");
+        std::snprintf(text + at, sizeof text - at, " %s: recorded %.9g, replayed %.9g (%s)",
+                      component_name(r.component), static_cast<double>(r.recorded), static_cast<double>(r.replayed),
+                      r.component < 3 ? "N" : "N m");
     else
         std::snprintf(text + at, sizeof text - at, " (of this tick only a check was kept)");
     return text;
@@ -151,10 +152,10 @@ void run(const Options& o) {
 
 void add_replay(CLI::App& app) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
-        app.add_subcommand("replay",
-                           "Lives a recording again and compares every force bit for bit, or within a tolerance. Exit\n"
-                           "status 1, and the first difference, if it does not come out the same. Or makes tables of it.");
+    CLI::App* command = app.add_subcommand(
+        "replay",
+        "Lives a recording again and compares every force bit for bit, or within a tolerance. Exit\n"
+        "status 1, and the first difference, if it does not come out the same. Or makes tables of it.");
     command->footer(
         "docs/replay.md has the columns, and how to keep recordings as tests.\n"
         "  frm replay run.frmrec --from 1.5 --to 2000t --csv run.csv   from 1.5 s to tick 2000");
@@ -168,7 +169,9 @@ void add_replay(CLI::App& app) {
                      "forces and torques may be off by this share of the largest on their body in the recording")
         ->check(number_within(0, 1))
         ->type_name("SHARE");
-    command->add_option("--force", o.force, "and forces by so much besides")->check(number_within(0, 1e9))->type_name("N");
+    command->add_option("--force", o.force, "and forces by so much besides")
+        ->check(number_within(0, 1e9))
+        ->type_name("N");
     command->add_option("--torque", o.torque, "and torques")->check(number_within(0, 1e9))->type_name("N_M");
     const CLI::Validator moment(
         [](std::string& text) {
@@ -180,7 +183,8 @@ void add_replay(CLI::App& app) {
         ->check(moment)
         ->type_name("T");
     command->add_option("--to", o.to, "the last")->check(moment)->type_name("T");
-    command->add_option("--csv", o.csv, "write motions and forces to this file, a row for each tick and body; no replay")
+    command
+        ->add_option("--csv", o.csv, "write motions and forces to this file, a row for each tick and body; no replay")
         ->check(not_empty())
         ->type_name("FILE");
     command

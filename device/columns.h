@@ -77,8 +77,8 @@ public:
         std::uint32_t bits, expected;
         std::memcpy(&bits, &v, 4);
         std::memcpy(&expected, &prediction, 4);
-        bits = unordered32(static_cast<std::uint32_t>(
-            word<32>(ordered32(bits), std::isfinite(prediction) ? ordered32(expected) : 0)));
+        bits = unordered32(
+            static_cast<std::uint32_t>(word<32>(ordered32(bits), std::isfinite(prediction) ? ordered32(expected) : 0)));
         std::memcpy(&v, &bits, 4);
     }
     void f64(double& v) { f64(v, 0); }

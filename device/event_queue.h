@@ -69,7 +69,9 @@ public:
 
 private:
     static constexpr std::uint32_t skip = 255;
-    static std::uint64_t whole(std::size_t size) { return (size + grain - 1) / grain * grain + (size == 0 ? grain : 0); }
+    static std::uint64_t whole(std::size_t size) {
+        return (size + grain - 1) / grain * grain + (size == 0 ? grain : 0);
+    }
 
     // Type, bytes used and grains taken in one word: what is not 0 can be taken.
     void publish(std::uint64_t at, std::uint32_t type, std::size_t used, std::uint64_t length) {

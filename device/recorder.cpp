@@ -80,8 +80,7 @@ void Recorder::close() {
         throw Error(FRM_ERROR_CAPACITY,
                     "%llu events were lost: the queue of %llu bytes was full (frm_recorder_def.queue_bytes); the "
                     "recording is good up to there",
-                    static_cast<unsigned long long>(lost_.load()),
-                    static_cast<unsigned long long>(queue_.capacity()));
+                    static_cast<unsigned long long>(lost_.load()), static_cast<unsigned long long>(queue_.capacity()));
 }
 
 frm_recorder_stats Recorder::stats() const {
@@ -179,7 +178,8 @@ void Recorder::take(std::uint32_t type, const std::uint8_t* data, std::size_t si
             tick.has_hash = head.has_hash != 0, tick.hash = head.hash;
             tick.forces.resize(head.has_forces ? head.bodies : 0);
             tick.checks.resize(head.has_forces ? 0 : head.bodies);
-            std::memcpy(static_cast<void*>(tick.forces.data()), data + sizeof head, tick.forces.size() * sizeof(Forces));
+            std::memcpy(static_cast<void*>(tick.forces.data()), data + sizeof head,
+                        tick.forces.size() * sizeof(Forces));
             std::memcpy(tick.checks.data(), data + sizeof head, tick.checks.size() * sizeof(std::uint32_t));
             ticks_.store(head.tick, std::memory_order_relaxed);
             break;
@@ -263,8 +263,13 @@ void Recorder::motion_set(const World&, const Body& body) {
 }
 
 void Recorder::ticked(const World& world, float dt) {
-    TickHead head{world.ticks(), 0, world.time(), dt, static_cast<std::uint32_t>(world.bodies().size()),
-                  world.ticks() % def_.hash_interval == 0, world.ticks() % def_.force_interval == 0};
+    TickHead head{world.ticks(),
+                  0,
+                  world.time(),
+                  dt,
+                  static_cast<std::uint32_t>(world.bodies().size()),
+                  world.ticks() % def_.hash_interval == 0,
+                  world.ticks() % def_.force_interval == 0};
     if (head.has_hash) head.hash = world.hash();
     const std::size_t size = sizeof head + head.bodies * (head.has_forces ? sizeof(Forces) : sizeof(std::uint32_t));
     if (def_.waits && size > queue_.capacity() / 2) {

@@ -17,8 +17,8 @@ namespace frm::device {
 class Device;
 
 struct RecorderDef {
-    std::uint32_t hash_interval = 100;   ///< ticks
-    std::uint32_t force_interval = 1;    ///< ticks; exchanges
+    std::uint32_t hash_interval = 100;  ///< ticks
+    std::uint32_t force_interval = 1;   ///< ticks; exchanges
     std::uint32_t queue_bytes = 1 << 22;
     bool waits = false;  ///< for the writer, where it has no room; else what has none is lost, and counted
 };

@@ -20,7 +20,7 @@ namespace frm::device {
 constexpr std::uint8_t recording_magic[8] = {0x89, 'F', 'R', 'R', '\r', '\n', 0x1A, '\n'};
 constexpr std::uint32_t recording_version = 3;
 constexpr std::uint8_t index_magic[8] = {'F', 'R', 'R', 'I', 'N', 'D', 'E', 'X'};  ///< at the end of the file
-constexpr std::uint32_t block_mark = 0x4B4C4246;                                  // "FBLK"
+constexpr std::uint32_t block_mark = 0x4B4C4246;                                   // "FBLK"
 constexpr std::uint64_t largest_block = std::uint64_t{1} << 31;
 
 /// Of a block's head, and of its contents: 64-bit FNV-1a, its halves exclusive-or.

@@ -120,7 +120,8 @@ private:
         more(s, e.has_wrenches ? 0 : achieved_words);
         auto size = static_cast<std::uint32_t>(e.raw.size());
         columns_.u32(size);
-        if (size > largest_packet) throw Error(FRM_ERROR_CORRUPT, "a device's packet is longer than %u", largest_packet);
+        if (size > largest_packet)
+            throw Error(FRM_ERROR_CORRUPT, "a device's packet is longer than %u", largest_packet);
         e.raw.resize(size);
         columns_.packet(e.raw.data(), size);
     }

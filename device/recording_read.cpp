@@ -164,38 +164,38 @@ Event read_event(ByteReader& r, std::uint32_t version) {
     const auto in_columns = [&](EventType t) {
         return t == EventType::motion || t == EventType::tick || t == EventType::exchange;
     };
-    const bool unknown = version < 3 ? type == static_cast<std::uint8_t>(EventType::gap)
-                                     : in_columns(static_cast<EventType>(type));
+    const bool unknown =
+        version < 3 ? type == static_cast<std::uint8_t>(EventType::gap) : in_columns(static_cast<EventType>(type));
     if (!unknown) switch (static_cast<EventType>(type)) {
-        case EventType::world:
-            return read_world(r, version);
-        case EventType::map:
-            return read_map(r);
-        case EventType::water:
-            return read_water(r, version);
-        case EventType::water_end:
-            return event::WaterEnd{};
-        case EventType::height:
-            return event::Height{read_values(r)};
-        case EventType::pressure:
-            return event::Pressure{read_values(r)};
-        case EventType::body:
-            return read_body(r);
-        case EventType::body_end:
-            return event::BodyEnd{r.u32()};
-        case EventType::motion:
-            return read_motion(r);
-        case EventType::tick:
-            return read_tick(r);
-        case EventType::device:
-            return read_device(r);
-        case EventType::exchange:
-            return read_exchange(r);
-        case EventType::end:
-            return event::End{r.u64()};
-        case EventType::gap:
-            return event::Gap{r.u64()};
-    }
+            case EventType::world:
+                return read_world(r, version);
+            case EventType::map:
+                return read_map(r);
+            case EventType::water:
+                return read_water(r, version);
+            case EventType::water_end:
+                return event::WaterEnd{};
+            case EventType::height:
+                return event::Height{read_values(r)};
+            case EventType::pressure:
+                return event::Pressure{read_values(r)};
+            case EventType::body:
+                return read_body(r);
+            case EventType::body_end:
+                return event::BodyEnd{r.u32()};
+            case EventType::motion:
+                return read_motion(r);
+            case EventType::tick:
+                return read_tick(r);
+            case EventType::device:
+                return read_device(r);
+            case EventType::exchange:
+                return read_exchange(r);
+            case EventType::end:
+                return event::End{r.u64()};
+            case EventType::gap:
+                return event::Gap{r.u64()};
+        }
     throw Error(FRM_ERROR_CORRUPT, "an event of type %u is not known", type);
 }
 
@@ -307,7 +307,8 @@ void RecordingReader::jump() {
     jumps_.pop_back();
     at_file_ = to.offset;
     BlockPlace place;
-    if (to.offset < file_header_bytes || !read_place(to.offset, place) || place.kind != to.kind || place.tick != to.tick)
+    if (to.offset < file_header_bytes || !read_place(to.offset, place) || place.kind != to.kind ||
+        place.tick != to.tick)
         throw Error(FRM_ERROR_CORRUPT, "%s: its index does not fit", path_.c_str());
     tick_ = place.tick, time_ = place.time;
 }
@@ -411,8 +412,7 @@ bool RecordingReader::seek(std::uint64_t tick, double time) {
     if (!had) scan(index);
     std::size_t best = index.size();
     for (std::size_t i = 0; i < index.size(); ++i)
-        if (index[i].kind == BlockKind::first_columns && index[i].tick <= tick && index[i].time < time)
-            best = i;
+        if (index[i].kind == BlockKind::first_columns && index[i].tick <= tick && index[i].time < time) best = i;
     if (best == index.size()) return had;
     jumps_.push_back(index[best]);
     for (std::size_t i = best; i-- > 0;)

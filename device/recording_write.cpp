@@ -96,7 +96,8 @@ RecordingWriter::~RecordingWriter() {
 }
 
 void RecordingWriter::write(const Event& event) {
-    const bool in_columns = std::holds_alternative<event::Tick>(event) || std::holds_alternative<event::Motion>(event) ||
+    const bool in_columns = std::holds_alternative<event::Tick>(event) ||
+                            std::holds_alternative<event::Motion>(event) ||
                             std::holds_alternative<event::Exchange>(event);
     if (!in_columns) {
         if (events_ > 0) flush();

@@ -78,7 +78,8 @@ void Replay::survey() {
             }
         }
         if (const auto* body = std::get_if<event::Body>(&e)) {
-            if (body->id > most_bodies_ever) throw Error(FRM_ERROR_CORRUPT, "recording: body %u does not follow", body->id);
+            if (body->id > most_bodies_ever)
+                throw Error(FRM_ERROR_CORRUPT, "recording: body %u does not follow", body->id);
             there.push_back(body->id);
             peaks_.resize(std::max<std::size_t>(peaks_.size(), body->id + 1));
         }
@@ -91,7 +92,8 @@ void Replay::survey() {
         if (std::holds_alternative<event::Water>(e)) info_.has_water = 1;
     }
     if (info_.lost_events > 0)
-        context_.log(FRM_LOG_WARNING, "the recording has a gap after %llu ticks: %llu events were lost when it was made",
+        context_.log(FRM_LOG_WARNING,
+                     "the recording has a gap after %llu ticks: %llu events were lost when it was made",
                      static_cast<unsigned long long>(info_.ticks), static_cast<unsigned long long>(info_.lost_events));
     info_.torn = reader_.torn();
     if (info_.torn)

@@ -603,8 +603,8 @@ typedef struct frm_device_driver {
                                    frm_device_state *state);
     /* Safe state at once: no force. */
     frm_status(FRM_CALL *stop)(void *user, void *instance);
-    /* What the last exchange read from the device, byte for byte: at most `capacity` (up to 512) bytes of it to data, and
-     * their number to *size. Bounded time, no allocation. May be null: such a device has no packets. */
+    /* What the last exchange read from the device, byte for byte: at most `capacity` (up to 512) bytes of it to
+     * data, and their number to *size. Bounded time, no allocation. May be null: such a device has no packets. */
     frm_status(FRM_CALL *raw)(void *user, void *instance, uint8_t *data, uint32_t capacity, uint32_t *size);
 } frm_device_driver;
 
@@ -715,8 +715,8 @@ typedef struct frm_replay_step_result {
     uint32_t body;     /* the first that differs, in order of creation */
     uint32_t part;     /* frm_part, the first that differs */
     double time;       /* of the world after this step, s */
-    uint32_t component; /* of that part's wrench, the one that is furthest off: 0 to 2 force x, y, z, 3 to 5 torque x, y, z;
-                           in the replay's axes, as `recorded` and `replayed` */
+    uint32_t component; /* of that part's wrench, the one that is furthest off: 0 to 2 force x, y, z, 3 to 5 torque
+                           x, y, z; in the replay's axes, as `recorded` and `replayed` */
     float recorded;    /* N or N m; 0 for FRM_PART_WORLD; NaN in a tick of which only the check was kept */
     float replayed;
     uint32_t reserved;
@@ -730,7 +730,7 @@ FRM_API frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def *def, uint64_
  * as `path`.part and gets its name when it is closed; if the process dies, the .part file is still a recording that
  * lacks at most its last frame: 40 ms of the world's time (128 ticks, 4096 events), and what a thread that looks every
  * 5 ms had not taken yet. An existing file is replaced on closing, an older .part file at once: move it away first.
- * Recording starts that thread; calls that are [realtime] stay so, unless def.waits is set. path is UTF-8. [offline] */
+ * Recording starts that thread; calls that are real-time stay so, unless def.waits is set. path is UTF-8. [offline] */
 FRM_API frm_status FRM_CALL frm_recorder_create(frm_world world, const char *path, const frm_recorder_def *def,
                                                 frm_recorder *recorder);
 
