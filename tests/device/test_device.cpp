@@ -53,7 +53,7 @@ frm_status FRM_CALL stop(void*, void* instance) {
     return FRM_OK;
 }
 
-const frm_device_driver driver{sizeof driver, 0, enumerate, open, close, info, calibrate, exchange, stop};
+const frm_device_driver driver{sizeof driver, 0, enumerate, open, close, info, calibrate, exchange, stop, nullptr};
 
 frm_device_state exchanged(frm_device device, frm_status expected = FRM_OK) {
     frm_device_state state{};

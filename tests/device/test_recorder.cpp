@@ -166,7 +166,7 @@ TEST_CASE("a killed process loses at most its last frame", "[recorder]") {
         }
         const std::uint64_t wait_for = 1 + random() % 3000;
         while (shared->taken < wait_for) usleep(50);
-        usleep(random() % 3000);
+        usleep(static_cast<useconds_t>(random() % 3000));
         REQUIRE(kill(child, SIGKILL) == 0);
         int status = 0;
         REQUIRE(waitpid(child, &status, 0) == child);
