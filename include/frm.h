@@ -51,7 +51,7 @@
  *   [realtime] as [owner], and no lock, no allocation, bounded time; a refused call may allocate and lock briefly
  *   [offline]  as [owner], and may take seconds
  * Two contexts share nothing that a caller can see. Threads that a context with threads > 1 uses are OpenMP's, which
- * keeps them for the process.
+ * keeps them for the process; a recorder has a thread of its own until it is closed.
  *
  * The caller's floating-point modes (rounding, flush to zero) do not matter and are not changed.
  */
