@@ -178,9 +178,10 @@ void Recorder::take(std::uint32_t type, const std::uint8_t* data, std::size_t si
             tick.has_hash = head.has_hash != 0, tick.hash = head.hash;
             tick.forces.resize(head.has_forces ? head.bodies : 0);
             tick.checks.resize(head.has_forces ? 0 : head.bodies);
-            std::memcpy(static_cast<void*>(tick.forces.data()), data + sizeof head,
-                        tick.forces.size() * sizeof(Forces));
-            std::memcpy(tick.checks.data(), data + sizeof head, tick.checks.size() * sizeof(std::uint32_t));
+            if (head.bodies > 0 && head.has_forces)
+                std::memcpy(static_cast<void*>(tick.forces.data()), data + sizeof head, head.bodies * sizeof(Forces));
+            else if (head.bodies > 0)
+                std::memcpy(tick.checks.data(), data + sizeof head, head.bodies * sizeof(std::uint32_t));
             ticks_.store(head.tick, std::memory_order_relaxed);
             break;
         }
