@@ -33,6 +33,8 @@ public:
     void deposit(int level, float x, float y, float amount);
     /// The part of the thickness that is spread so wide that it counts as even over all of the water.
     void leave(double amount) { rest_ += amount; }
+    /// Only this share of the volume's horizontal extent lies over the water: what is left counts no further.
+    void keep_over_water(float share) { rest_ *= static_cast<double>(share); }
     /// After the last deposit.
     void gather();
     /// So deep that of what is pushed or displaced `shallowest` under the calm surface, m, less than `deep_share` is seen

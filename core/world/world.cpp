@@ -112,6 +112,18 @@ void World::set_motion(Body& body, const Pose& pose, const Twist& twist) {
     if (observer_) observer_->motion_set(*this, body);
 }
 
+// What a body displaces raises a basin's level as far as the body is over the basin and not beside it.
+float World::share_over_water(const Body& body, const GridOrigin& centre) const {
+    const FieldDef& field = water_->def().field;
+    const float reach = body.radius() / field.cell;
+    const auto along = [&](std::int32_t whole, float rest, std::int32_t cells) {
+        const float at = static_cast<float>(whole) + rest, low = std::max(at - reach, 0.0f),
+                    high = std::min(at + reach, static_cast<float>(cells));
+        return std::clamp((high - low) / (2 * reach), 0.0f, 1.0f);
+    };
+    return along(centre.i, centre.x, field.nx) * along(centre.j, centre.y, field.ny);
+}
+
 bool World::rests_around(const Body& body, const SurfaceView& view) const {
     const Vec3f centre = body.rotation.to_world(body.centre()) * view.cells_per_metre;
     const auto reach = static_cast<std::int32_t>(std::min(body.radius() * view.cells_per_metre, 1e6f)) + 2;
@@ -205,6 +217,7 @@ void World::place_body(Body& body) {
         leave_displacement(body);
     else
         lay_displacement(body, level, spread, (def_.skip & skip_still_bodies) != 0);
+    body.footprint->keep_over_water(share_over_water(body, at));
     if (spread) displace_water(*body.footprint, water_->field, behind_ * def_.fluid.gravity);
     skipped_.still_bodies += body.footprint->kept();
     skipped_.deep_bodies += deep;
