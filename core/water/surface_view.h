@@ -13,6 +13,7 @@ struct SurfaceView {
     bool still = true;             ///< the water near the body is at rest
     GridOrigin origin;             ///< the body's origin in the field
     float cells_per_metre = 0;
+    float fastest = 0;  ///< sqrt(gravity * depth): bodies do not feel water run faster than waves do, m/s
     /// The field is of `ahead` seconds ago (FRM_SKIP_WAVE_STEPS); heights and velocities go on as Eqs. 7 and 8 say.
     float ahead = 0;
     bool waits = false;                  ///< nothing is done to the water in this tick

@@ -141,6 +141,7 @@ SurfaceView World::view_from(const Body& body, float dt, std::uint32_t steps) co
         view.field = &water_->field;
         view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
         view.cells_per_metre = 1.0f / field.cell;
+        view.fastest = std::sqrt(def_.fluid.gravity * field.depth);
         view.ahead = behind_;
         view.rise = behind_ * field.depth / field.cell;
         view.bend =
@@ -291,13 +292,13 @@ void World::step_waves(const WaveTime& waves) {
     Field& field = water_->field;
     const bool displaces = (def_.model & model_displacement) != 0, own_waves = (def_.model & model_own_waves) != 0;
     const float step = waves.time / static_cast<float>(waves.steps), push = step / def_.fluid.density;
-    const float gravity = def_.fluid.gravity;
+    const float gravity = def_.fluid.gravity, most = def_.fluid.density * gravity * field.def().depth;
     if (water_->take_start()) field.start_from_rest(step, gravity);
     pushes_.clear();
     const Rect all{0, 0, field.def().nx, field.def().ny};
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
     for (const auto& body : bodies_) {
-        body->footprint->gather_pressure();
+        body->footprint->gather_pressure(most);
         if (!body->footprint->pressed().empty()) pushes_.push_back(push_on_water(*body->footprint, push));
     }
     // Where the velocity inside a body is forced, that is before each step.
