@@ -559,10 +559,11 @@ FRM_API frm_status FRM_CALL frm_body_get_state(frm_body body, frm_body_state *st
 
 /* Added mass and damping at the last tick's pose, wetness and velocity; zero where the body is dry. With M the body's
  * own inertia about its origin and F the force and torque on it (frm_forces.total and the host's), solve
- *     (M + added_mass + dt damping) dv = dt F
- * for the change dv of its velocity in place of M dv = dt F, which the drag of a light body makes unstable: where drag
- * would turn it around within a step. A body at rest, and one at its final speed, stay so. Takes as long as looking its
- * sources up seven times. [realtime] */
+ *     (M + added_mass + dt damping) dv = dt F - g added_mass v,      g = 1 - (last tick's wet_share) / wet_share
+ * (g = 0 where wet_share did not grow: what gets wet takes its momentum from the body) for the change dv of the body's
+ * velocity v, in place of M dv = dt F, which the drag of a light body makes unstable: where drag would turn it around
+ * within a step. A body at rest, and one at its final speed, stay so. Takes as long as looking its sources up seven
+ * times. [realtime] */
 FRM_API frm_status FRM_CALL frm_body_get_coefficients(frm_body body, frm_coefficients *coefficients);
 
 /* The sources after the last tick, for arrows and analysis. Two-call rule: *count receives the number of sources;

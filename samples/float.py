@@ -4,7 +4,8 @@
     PYTHONPATH=bindings/python samples/float.py box.frm [density ratio, 0.05]
 
 A map of any box-like object that is about its own centre, with added mass (frm bake makes it). The host's rule is
-semi-implicit Euler: v += dv, then x += dt v. dv is that of M dv = dt F, or of (M + added mass + dt damping) dv = dt F.
+semi-implicit Euler: v += dv, then x += dt v. dv is that of M dv = dt F, or of (M + added mass + dt damping) dv = dt F
+less what the part of the surface takes that has just become wet: grown added mass times v.
 """
 import math
 import sys
@@ -50,7 +51,7 @@ def fall(path, ratio, coefficients):
         body = frm.Body(world, box_map, mass=mass)
         own = mass / 12 * np.diag((size ** 2).sum() - size ** 2)  # a box of even density, about its centre
         position, velocity, spin = np.array((0, 0, edge)), np.array((0, 0, -SPEED)), np.zeros(3)
-        rotation = turned(np.array((0, 0, 0, 1.0)), np.array((0.4, 0.1, 0.1)), 1)
+        rotation, wet_share = turned(np.array((0, 0, 0, 1.0)), np.array((0.4, 0.1, 0.1)), 1), 0.0
         for n in range(round(SECONDS / DT)):
             speed = float(np.linalg.norm(velocity))
             yield n * DT, float(position[2]), speed
@@ -66,10 +67,15 @@ def fall(path, ratio, coefficients):
             f, t = total.force, total.torque
             force = np.array((f.x, f.y, f.z, t.x, t.y, t.z))
             force[3:] -= np.cross(spin, inertia @ spin)
+            impulse = DT * force
             if coefficients:
                 c = body.coefficients()
-                m += np.reshape(c.added_mass, (6, 6)) + DT * np.reshape(c.damping, (6, 6))
-            change = np.linalg.solve(m, DT * force)
+                added_mass = np.reshape(c.added_mass, (6, 6))
+                m += added_mass + DT * np.reshape(c.damping, (6, 6))
+                if c.wet_share > wet_share:
+                    impulse -= (1 - wet_share / c.wet_share) * added_mass @ np.concatenate((velocity, spin))
+                wet_share = c.wet_share
+            change = np.linalg.solve(m, impulse)
             velocity, spin = velocity + change[:3], spin + change[3:]
             position, rotation = position + DT * velocity, turned(rotation, spin, DT)
 
@@ -78,7 +84,7 @@ def main():
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
     ratio = float(sys.argv[2]) if len(sys.argv) == 3 else 0.05
-    for name, coefficients in (("M dv = dt F", False), ("(M + added mass + dt damping) dv = dt F", True)):
+    for name, coefficients in (("M dv = dt F", False), ("with added mass and damping", True)):
         ticks = list(fall(sys.argv[1], ratio, coefficients))
         time, height, speed = ticks[-1]
         fastest = max(s for _, _, s in ticks)

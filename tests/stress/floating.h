@@ -42,6 +42,7 @@ struct FloatingBox {
     Pose pose;
     Vec3d velocity, spin;  ///< world axes
     Body* body = nullptr;
+    float wet_share = 0;  ///< of the last step
 
     FloatingBox(World& world, const std::shared_ptr<const Map>& map, const Vec3d& edges, double ratio, const Pose& at)
         : size(edges),
@@ -62,10 +63,11 @@ struct FloatingBox {
     /// v += dt F / m, then x += dt v.
     void step(double dt) { advance(dt, nullptr); }
 
-    /// With what the water adds: (M + added mass + dt damping) dv = dt F.
+    /// With what the water adds: (M + added mass + dt damping) dv = dt F - grown added mass * v.
     void step_with(double dt, const Fluid& fluid) {
         const Coefficients c = coefficients_of(*body, fluid);
         advance(dt, &c);
+        wet_share = c.wet_share;
     }
 
     double energy() const {
@@ -89,8 +91,14 @@ private:
             for (int q = 0; q < 3; ++q)
                 for (int k = 0; k < 3; ++k) a[3 + p][3 + q] += row[p][k] * i[k] * row[q][k];
         }
+        // What gets wet takes its momentum from the body (von Karman 1929); what gets dry leaves with what it has.
+        const double v[6] = {velocity.x, velocity.y, velocity.z, spin.x, spin.y, spin.z};
+        const double grown = c && c->wet_share > wet_share ? 1 - static_cast<double>(wet_share / c->wet_share) : 0;
         for (std::size_t p = 0; c && p < 6; ++p)
-            for (std::size_t q = 0; q < 6; ++q) a[p][q] += c->added_mass[6 * p + q] + dt * c->damping[6 * p + q];
+            for (std::size_t q = 0; q < 6; ++q) {
+                a[p][q] += c->added_mass[6 * p + q] + dt * c->damping[6 * p + q];
+                b[p] -= grown * c->added_mass[6 * p + q] * v[q];
+            }
         solve(a, b);
         velocity += Vec3d(b[0], b[1], b[2]);
         spin += Vec3d(b[3], b[4], b[5]);
