@@ -24,9 +24,12 @@ Recorder::Recorder(api::WorldObject& world, const char* path, const RecorderDef&
     put(event::World{w.def(), def.hash_interval, axes});
     if (const Water* water = w.water()) {
         water_created(w);
-        std::vector<float> height(water->field.cells());
-        water->field.copy_heights(height.data());
-        height_set(w, height.data(), height.size());
+        // Only heights that were set: told of calm ones, a replay's tiles would be awake that were not.
+        if (water->starts()) {
+            std::vector<float> height(water->field.cells());
+            water->field.copy_heights(height.data());
+            height_set(w, height.data(), height.size());
+        }
         if (water->pressure()) pressure_set(w, water->pressure(), water->field.cells());
     }
     for (const auto& body : w.bodies()) body_created(w, *body);

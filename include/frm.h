@@ -512,6 +512,20 @@ typedef struct frm_body_state {
     frm_twist twist;
 } frm_body_state;
 
+/* How the fluid answers a change of a body's motion: what a host that integrates needs for a body that is light beside
+ * the water around it. Six rows of six numbers, row after row: force x, y, z and torque x, y, z about the body's origin
+ * (rows) for motion along x, y, z and about x, y, z (columns), in the world frame, as frm_wrench and frm_twist are.
+ * Both matrices are symmetric, and damping never drives a body (positive semi-definite). */
+typedef struct frm_coefficients {
+    uint32_t struct_size;
+    float wet_share;       /* 0 to 1: wet area over area */
+    double added_mass[36]; /* kg, kg m, kg m^2: -added_mass * acceleration is a force that frm_forces does not have. The
+                              map's (frm_map_get_added_mass) times wet_share; zero if the map has none */
+    double damping[36];    /* N s/m, N s, N m s: how fast resistance grows with velocity, at the last tick's velocity:
+                              the sum over the wet sources of (J J^T)^(1/2), J the change of a source's force with its
+                              stream */
+} frm_coefficients;
+
 /* One haptic source after a tick, in the world frame. */
 typedef struct frm_source_state {
     frm_position position;
@@ -542,6 +556,15 @@ FRM_API frm_status FRM_CALL frm_body_get_forces(frm_body body, frm_forces *force
 
 /* How wet the body is, and how fast it goes through the water. [realtime] */
 FRM_API frm_status FRM_CALL frm_body_get_state(frm_body body, frm_body_state *state);
+
+/* Added mass and damping at the last tick's pose, wetness and velocity; zero where the body is dry. With M the body's
+ * own inertia about its origin and F the force and torque on it (frm_forces.total and the host's), solve
+ *     (M + added_mass + dt damping) dv = dt F - g added_mass v,      g = 1 - (last tick's wet_share) / wet_share
+ * (g = 0 where wet_share did not grow: what gets wet takes its momentum from the body) for the change dv of the body's
+ * velocity v, in place of M dv = dt F, which the drag of a light body makes unstable: where drag would turn it around
+ * within a step. A body at rest, and one at its final speed, stay so. Takes as long as looking its sources up seven
+ * times. [realtime] */
+FRM_API frm_status FRM_CALL frm_body_get_coefficients(frm_body body, frm_coefficients *coefficients);
 
 /* The sources after the last tick, for arrows and analysis. Two-call rule: *count receives the number of sources;
  * sources may be null; `capacity` below the number: FRM_ERROR_CAPACITY. [realtime] */

@@ -48,6 +48,15 @@ Vec3f Axes::mirror(const Vec3f& v) const {
     }
 }
 
+std::array<double, 36> Axes::matrix_out(const std::array<double, 36>& m) const {
+    std::array<double, 36> out;
+    const auto host = [&](std::size_t i) { return i - i % 3 + static_cast<std::size_t>(from_[i % 3]); };
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = 0; j < 6; ++j)
+            out[6 * host(i) + host(j)] = ((i < 3) != (j < 3) ? static_cast<double>(hand_) : 1.0) * m[6 * i + j];
+    return out;
+}
+
 Pose Axes::pose_in(const frm_pose& pose, const char* what) const {
     const frm_position& p = pose.position;
     if (!(std::fabs(p.x) <= 1e9 && std::fabs(p.y) <= 1e9 && std::fabs(p.z) <= 1e9))

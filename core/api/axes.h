@@ -2,6 +2,8 @@
 // mesh file's, which some hosts' importers mirror (matrix D, host to mesh). A rotation then is R = C R_host D^-1.
 #pragma once
 
+#include <array>
+
 #include "core/body/body.h"
 #include "frm.h"
 
@@ -30,6 +32,8 @@ public:
     frm_pose pose_out(const Pose& pose) const;
     frm_twist twist_out(const Twist& t) const { return {vector_out(t.linear), axial_out(t.angular)}; }
     frm_wrench wrench_out(const Wrench& w) const { return {vector_out(w.force), axial_out(w.torque)}; }
+    /// A matrix that gives a wrench for a twist, row after row, in the world's axes.
+    std::array<double, 36> matrix_out(const std::array<double, 36>& m) const;
     Wrench wrench_in(const frm_wrench& w) const { return {vector_in(w.force), axial_in(w.torque)}; }
 
     /// A vector in the body's frame.

@@ -1,4 +1,7 @@
+#include <cstring>
+
 #include "core/api/objects.h"
+#include "core/body/coefficients.h"
 
 namespace frm::api {
 
@@ -118,6 +121,19 @@ frm_status FRM_CALL frm_body_get_state(frm_body body, frm_body_state* state) {
         out.pose = c.axes().pose_out(b.def.pose);
         out.twist = c.axes().twist_out(b.def.twist);
         write_struct(state, out);
+    });
+}
+
+frm_status FRM_CALL frm_body_get_coefficients(frm_body body, frm_coefficients* coefficients) {
+    return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
+        require_out(coefficients, "coefficients");
+        const Coefficients found = coefficients_of(object.body, object.world.world.def().fluid);
+        const auto added_mass = c.axes().matrix_out(found.added_mass), damping = c.axes().matrix_out(found.damping);
+        frm_coefficients out{};
+        out.wet_share = found.wet_share;
+        std::memcpy(out.added_mass, added_mass.data(), sizeof out.added_mass);
+        std::memcpy(out.damping, damping.data(), sizeof out.damping);
+        write_struct(coefficients, out);
     });
 }
 

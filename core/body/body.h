@@ -105,6 +105,7 @@ struct Body {
     } detail;
     float map_time_owed = 0;   ///< s, to all wet sources, of ticks that looked up groups
     Budget budget;             ///< of this tick
+    bool stays_dry = false;    ///< nothing of it is looked at in this tick but its weight (FRM_SKIP_DRY_BODIES)
     bool pushes = true;        ///< it is near enough to the surface to push it
     bool water_finite = true;  ///< the surface around it is a finite number
     float wet_height = 0;  ///< of the wet surface's centroid above the origin, m, as if the surface over it were calm

@@ -43,7 +43,11 @@ float sample_water(const Body& body, const SurfaceView& surface, const SurfaceVi
     for (std::size_t s = 0; s < lookup_block && first + s < body.sources.size(); ++s) {
         if (!(block.wet[s] > 0)) continue;
         const Vec3f at = body.rotation.to_world(map.sources[first + s].position * body.def.scale);
-        const Vec3f water = surface.velocity(at) - own.velocity(at), local = body.rotation.to_body(water);
+        Vec3f water = surface.velocity(at) - own.velocity(at);
+        // Linear waves have u = c h / d, and a trough is no deeper than the water: faster than c they mean nothing.
+        const float square = dot(water, water);
+        if (square > surface.fastest * surface.fastest) water = water * (surface.fastest / std::sqrt(square));
+        const Vec3f local = body.rotation.to_body(water);
         block.x[s] = local.x, block.y[s] = local.y, block.z[s] = local.z;
         most = std::max(most, dot(water, water));
     }
@@ -152,6 +156,7 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
             map.tables.friction_sum * motion.friction <=
             skip_share * map.tables.peak_pressure * motion.pressure * largest_ratio(body, water, motion);
 
+    body.streams.motion = motion;
     const LookupTable table = lookup_table(map);
     const auto look_up_block = kernels().look_up_block;
     LookupSum sum{};

@@ -33,7 +33,10 @@ HeightGrid heights_of(const SurfaceView& surface, const Under& under) {
         // Clusters are sampled a little beyond the body's box too.
         const Rect& c = under.cells;
         const std::int32_t x = (c.i1 - c.i0) / 4 + 2, y = (c.j1 - c.j0) / 4 + 2;
-        field.heights_ahead({c.i0 - x, c.j0 - y, c.i1 + x, c.j1 + y}, surface.rise, surface.bend, surface.scratch);
+        const Rect around{c.i0 - x, c.j0 - y, c.i1 + x, c.j1 + y};
+        if (surface.steps <= 1 ||
+            !field.mean_heights(around, surface.step, surface.gravity, surface.steps, *surface.room, surface.scratch))
+            field.heights_ahead(around, surface.rise, surface.bend, surface.scratch);
         heights = surface.scratch;
     }
     return {heights, field.stride(), field.def().nx, field.def().ny, field.level()};

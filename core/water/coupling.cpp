@@ -20,7 +20,7 @@ std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
 
 }  // namespace
 
-void displace_water(Footprint& footprint, Field& water) {
+void displace_water(Footprint& footprint, Field& water, float late) {
     if (footprint.first) return;
     if (!footprint.changed()) return;
     water.raise(footprint.rest_change());
@@ -32,6 +32,10 @@ void displace_water(Footprint& footprint, Field& water) {
         for (std::int32_t j = r.j0; j < r.j1; ++j)
             add(field.height_row(j + dj) + (r.i0 + di), footprint.thickness().row(j) + r.i0,
                 footprint.thickness_before_row(j) + r.i0, r.i1 - r.i0);
+        if (!(late > 0)) return;
+        const std::int32_t n = footprint.size();
+        field.push({footprint.thickness().data(), n, n, r, di, dj, late});
+        field.push({footprint.thickness_before_row(0), n, n, r, di, dj, -late});
     };
     raise(footprint.own, changed, 0, 0);
     if (const Rect r = inside_water(footprint, water, changed); !r.empty())

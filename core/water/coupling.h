@@ -8,8 +8,9 @@
 namespace frm {
 
 /// The water rises where the body takes its place and sinks where the body leaves: heights += change of thickness.
-/// Keeps the volume of water, leaves no vortex.
-void displace_water(Footprint& footprint, Field& water);
+/// Keeps the volume of water, leaves no vortex. `late`: how long after the field's own time this is, times gravity. The
+/// field's next step would let the change push for all of its time: what it pushes too much is taken off here.
+void displace_water(Footprint& footprint, Field& water, float late = 0);
 
 /// The paper's rule: inside the body the water has the body's velocity. `linear` and `angular` are the body's,
 /// `origin` its origin in the footprint's window; the velocity is taken at the height `z` above the body's origin.

@@ -125,6 +125,55 @@ void Field::heights_ahead(const Rect& cells, float rise, float bend, float* out)
     }
 }
 
+bool Field::mean_heights(const Rect& cells, float dt, float gravity, std::uint32_t steps, Room& room,
+                         float* out) const {
+    // What happens further away than a cell a step does not get here in time; the faces around stay as they are.
+    const auto reach = static_cast<std::int32_t>(std::min(steps, 1u << 16));
+    const Rect wanted = cells.clipped(def_.nx, def_.ny);
+    if (wanted.empty()) return true;
+    const Rect r =
+        Rect{wanted.i0 - reach, wanted.j0 - reach, wanted.i1 + reach, wanted.j1 + reach}.clipped(def_.nx, def_.ny);
+    const std::int32_t nx = r.i1 - r.i0, ny = r.j1 - r.j0;
+    const std::ptrdiff_t stride = nx + 1;
+    if (std::int64_t{nx + 1} * (ny + 1) > Room::cells) return false;
+    const auto row = [&](std::pmr::vector<float>& of, std::int32_t j) { return of.data() + j * stride; };
+    for (std::int32_t j = 0; j <= ny; ++j) {
+        std::copy_n(velocity_y_row(r.j0 + j) + r.i0, nx, row(room.v, j));
+        if (j == ny) break;
+        std::copy_n(velocity_x_row(r.j0 + j) + r.i0, nx + 1, row(room.u, j));
+        std::copy_n(height_row(r.j0 + j) + r.i0, nx, row(room.height, j));
+    }
+    const std::int32_t width = wanted.i1 - wanted.i0, left = wanted.i0 - r.i0;
+    const float slope = dt * gravity / def_.cell, divergence = dt * def_.depth / def_.cell;
+    for (std::int32_t j = wanted.j0; j < wanted.j1; ++j)
+        std::copy_n(height_row(j) + wanted.i0, width, out + j * stride_ + wanted.i0);
+    for (std::uint32_t n = 1; n < steps; ++n) {
+        for (std::int32_t j = 0; j < ny; ++j) {
+            const float *const h = row(room.height, j), *const below = h - stride;
+            float *const u = row(room.u, j), *const v = row(room.v, j);
+            for (std::int32_t i = 1; i < nx; ++i) u[i] -= slope * (h[i] - h[i - 1]);
+            if (j == 0) continue;
+            for (std::int32_t i = 0; i < nx; ++i) v[i] -= slope * (h[i] - below[i]);
+        }
+        for (std::int32_t j = 0; j < ny; ++j) {
+            float* const h = row(room.height, j);
+            const float *const u = row(room.u, j), *const v = row(room.v, j), *const above = v + stride;
+            for (std::int32_t i = 0; i < nx; ++i) h[i] -= divergence * ((u[i + 1] - u[i]) + (above[i] - v[i]));
+        }
+        for (std::int32_t j = wanted.j0; j < wanted.j1; ++j) {
+            float* const sum = out + j * stride_ + wanted.i0;
+            const float* const h = row(room.height, j - r.j0) + left;
+            for (std::int32_t i = 0; i < width; ++i) sum[i] += h[i];
+        }
+    }
+    const float share = 1 / static_cast<float>(steps);
+    for (std::int32_t j = wanted.j0; j < wanted.j1; ++j) {
+        float* const sum = out + j * stride_ + wanted.i0;
+        for (std::int32_t i = 0; i < width; ++i) sum[i] *= share;
+    }
+    return true;
+}
+
 void Field::raise(double volume) {
     if (def_.border == Border::reflecting) level_ += volume / static_cast<double>(cells());
 }

@@ -63,6 +63,9 @@ public:
                  std::uint32_t threads);
     void step(float dt, float gravity, std::uint32_t threads) { advance(dt, gravity, 1, nullptr, 0, threads); }
 
+    /// A push of the velocities, at once.
+    void push(const Push& push);
+
     /// Bilinear; zero outside.
     float height_at(const GridOrigin& origin, float x, float y) const;
     void velocity_at(const GridOrigin& origin, float x, float y, float& u, float& v) const;
@@ -72,6 +75,16 @@ public:
     /// `rise` = t * depth / cell; `bend` = (t + step) t / 2 * gravity * depth / cell^2, because the velocities are those of
     /// half a step ago.
     void heights_ahead(const Rect& cells, float rise, float bend, float* out) const;
+
+    /// The mean of some cells' heights over the beginnings of the next `steps` steps of `dt`, without pushes; as
+    /// heights_ahead. False, and nothing done, where that takes more than `room` can hold.
+    struct Room {
+        static constexpr std::int32_t cells = 256 * 256;
+        explicit Room(std::pmr::memory_resource* memory)
+            : height(cells, 0, memory), u(cells, 0, memory), v(cells, 0, memory) {}
+        std::pmr::vector<float> height, u, v;
+    };
+    bool mean_heights(const Rect& cells, float dt, float gravity, std::uint32_t steps, Room& room, float* out) const;
 
     /// Floats from one row to the next, in each of the arrays.
     std::ptrdiff_t stride() const { return stride_; }
@@ -114,8 +127,6 @@ public:
 private:
     friend class WaveStep;
 
-    /// A step's push, at once.
-    void push(const Push& push);
     void look_for_calm(float gravity);
     void look_for_high_waves(std::uint32_t steps);
 

@@ -129,6 +129,15 @@ void Footprint::splat_pressure(const Vec3f& at, float pressure, float area, floa
         pressure_.add_wide(x, y, std::min(width, widest), amount);
 }
 
+void Footprint::gather_pressure(float most) {
+    pressure_.gather();
+    const Rect& r = pressed();
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        float* const p = pressure_.row(j);
+        for (std::int32_t i = r.i0; i < r.i1; ++i) p[i] = std::min(std::max(p[i], -most), most);
+    }
+}
+
 // A Gaussian cell by cell: for a source of many cells.
 void Footprint::splat_wide(float x, float y, float width, float amount) {
     constexpr auto reach = static_cast<std::int32_t>(3 * widest_splat);  // cells to each side

@@ -33,6 +33,8 @@ public:
     void deposit(int level, float x, float y, float amount);
     /// The part of the thickness that is spread so wide that it counts as even over all of the water.
     void leave(double amount) { rest_ += amount; }
+    /// Only this share of the volume's horizontal extent lies over the water: what is left counts no further.
+    void keep_over_water(float share) { rest_ *= static_cast<double>(share); }
     /// After the last deposit.
     void gather();
     /// So deep that of what is pushed or displaced `shallowest` under the calm surface, m, less than `deep_share` is seen
@@ -45,8 +47,8 @@ public:
     /// Pressure p on a horizontal area around a point: a Gaussian of that area's width (section 6.3), wider with
     /// depth, whose sum is p * area.
     void splat_pressure(const Vec3f& at, float pressure, float area, float depth);
-    /// After the last splat.
-    void gather_pressure() { pressure_.gather(); }
+    /// After the last splat. No more than `most` presses or sucks anywhere, Pa: as much as lifts the water by its depth.
+    void gather_pressure(float most = 3e38f);
 
     /// The waves that this body made, within the window: what it must not feel as a current (FRM_MODEL_OWN_WAVES).
     Field own;

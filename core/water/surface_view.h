@@ -13,11 +13,16 @@ struct SurfaceView {
     bool still = true;             ///< the water near the body is at rest
     GridOrigin origin;             ///< the body's origin in the field
     float cells_per_metre = 0;
+    float fastest = 0;  ///< sqrt(gravity * depth): bodies do not feel water run faster than waves do, m/s
     /// The field is of `ahead` seconds ago (FRM_SKIP_WAVE_STEPS); heights and velocities go on as Eqs. 7 and 8 say.
     float ahead = 0;
-    bool waits = false;        ///< nothing is done to the water in this tick
+    bool waits = false;                  ///< nothing is done to the water in this tick
     float rise = 0, bend = 0, pull = 0;  ///< of that time: see Field::heights_ahead, pull_at
+    /// Where the tick takes several steps: their number, and length, s. Heights are the mean of those that they begin with.
+    std::uint32_t steps = 1;
+    float step = 0, gravity = 0;
     float* scratch = nullptr;  ///< as large as the field's heights
+    Field::Room* room = nullptr;
 
     /// Horizontal velocity of the water; u_z is taken as zero (section 6.3).
     Vec3f velocity(const Vec3f& p) const {

@@ -35,6 +35,7 @@ public:
 
     /// As many floats as the field's heights take, for whoever is at work on a tick (SurfaceView::scratch).
     float* scratch() { return scratch_.data(); }
+    Field::Room& room() { return room_; }
 
     /// Publishes a snapshot when the interval has passed, or a longer one while nobody reads them; whether it did.
     bool offer_snapshot(std::uint64_t tick, double time);
@@ -48,6 +49,7 @@ private:
     double last_snapshot_ = 0, last_read_ = 0;  ///< s
     bool published_ = false, pressed_ = false, starts_ = false;
     std::pmr::vector<float> pressure_, scratch_;
+    Field::Room room_;
 };
 
 }  // namespace frm

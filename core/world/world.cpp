@@ -112,6 +112,18 @@ void World::set_motion(Body& body, const Pose& pose, const Twist& twist) {
     if (observer_) observer_->motion_set(*this, body);
 }
 
+// What a body displaces raises a basin's level as far as the body is over the basin and not beside it.
+float World::share_over_water(const Body& body, const GridOrigin& centre) const {
+    const FieldDef& field = water_->def().field;
+    const float reach = body.radius() / field.cell;
+    const auto along = [&](std::int32_t whole, float rest, std::int32_t cells) {
+        const float at = static_cast<float>(whole) + rest, low = std::max(at - reach, 0.0f),
+                    high = std::min(at + reach, static_cast<float>(cells));
+        return std::clamp((high - low) / (2 * reach), 0.0f, 1.0f);
+    };
+    return along(centre.i, centre.x, field.nx) * along(centre.j, centre.y, field.ny);
+}
+
 bool World::rests_around(const Body& body, const SurfaceView& view) const {
     const Vec3f centre = body.rotation.to_world(body.centre()) * view.cells_per_metre;
     const auto reach = static_cast<std::int32_t>(std::min(body.radius() * view.cells_per_metre, 1e6f)) + 2;
@@ -120,7 +132,7 @@ bool World::rests_around(const Body& body, const SurfaceView& view) const {
     return water_->field.rests({i - reach, j - reach, i + reach, j + reach});
 }
 
-SurfaceView World::view_from(const Body& body, float dt) const {
+SurfaceView World::view_from(const Body& body, float dt, std::uint32_t steps) const {
     SurfaceView view;
     view.everywhere = def_.everywhere;
     view.level = static_cast<float>(def_.level - body.def.pose.position.z);
@@ -129,10 +141,26 @@ SurfaceView World::view_from(const Body& body, float dt) const {
         view.field = &water_->field;
         view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
         view.cells_per_metre = 1.0f / field.cell;
+        view.fastest = std::sqrt(def_.fluid.gravity * field.depth);
         view.ahead = behind_;
         view.rise = behind_ * field.depth / field.cell;
         view.bend =
             0.5f * behind_ * (behind_ + last_step_) * def_.fluid.gravity * field.depth / (field.cell * field.cell);
+        // What the body lays now is in all `steps` of this tick, each of which pushes the water by it; so it feels the mean
+        // of the heights that those steps begin with, and body and water push each other alike.
+        if (steps > 1) {
+            const auto count = static_cast<float>(steps);
+            const float time = behind_ + dt, mean = 0.5f * time * (count - 1) / count,
+                        square = time * time * (count - 1) * (2 * count - 1) / (6 * count * count);
+            view.ahead = mean;
+            view.rise = mean * field.depth / field.cell;
+            view.bend =
+                0.5f * (square + mean * time / count) * def_.fluid.gravity * field.depth / (field.cell * field.cell);
+            view.steps = steps;
+            view.step = time / count;
+            view.gravity = def_.fluid.gravity;
+            view.room = &water_->room();
+        }
         // The field's velocities are half a step older than its heights; where no tick waits, half a tick.
         view.pull = std::max(0.0f, behind_ + 0.5f * (last_step_ - dt)) * def_.fluid.gravity / field.cell;
         view.scratch = water_->scratch();
@@ -167,38 +195,46 @@ World::WaveTime World::time_waves(float dt) const {
     return {time, std::max(1u, static_cast<std::uint32_t>(needed)), behind_ > 0};
 }
 
-void World::tick_body(Body& body, float dt, float time_budget, bool water_waits) {
+// A body's volume is in the water before any body feels the water, so that what a body feels of its own displacement is that
+// of its present pose. A tick late it would be a spring that pulls by where the body was, k (z - dt v) instead of k z: it
+// drives the body by k dt v. With it in time, a host's v += dt F / m, x += dt v is one symplectic step of body and water.
+void World::place_body(Body& body) {
     // What was dry without a wave of its own stays so: its forces are as they were, but for its weight.
     const bool settled =
         body.wetness == Wetness::dry && (!body.footprint || (!body.footprint->first && !body.footprint->active()));
-    if (settled && def_.skip & skip_dry_bodies && cannot_be_wet(body)) {
+    body.stays_dry = settled && def_.skip & skip_dry_bodies && cannot_be_wet(body);
+    if (!body.footprint || body.stays_dry) return;
+    const bool spread = (def_.model & model_displacement) != 0;
+    const auto level = static_cast<float>(def_.level - body.def.pose.position.z);
+    const bool deep = spread && def_.skip & skip_deep_bodies &&
+                      body.footprint->is_deep(level - dot(body.rotation.row2, body.centre()) - body.radius());
+    const Vec3f centre = body.rotation.to_world(body.centre());
+    const GridOrigin at = water_->origin_at(body.def.pose.position.x + static_cast<double>(centre.x),
+                                            body.def.pose.position.y + static_cast<double>(centre.y));
+    const GridOrigin origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
+    body.footprint->begin(at.i, at.j, origin, spread ? &water_->field : nullptr);
+    body.pushes = !deep;
+    if (deep)
+        leave_displacement(body);
+    else
+        lay_displacement(body, level, spread, (def_.skip & skip_still_bodies) != 0);
+    body.footprint->keep_over_water(share_over_water(body, at));
+    if (spread) displace_water(*body.footprint, water_->field, behind_ * def_.fluid.gravity);
+    skipped_.still_bodies += body.footprint->kept();
+    skipped_.deep_bodies += deep;
+}
+
+void World::tick_body(Body& body, float dt, float time_budget, std::uint32_t steps) {
+    const bool water_waits = water_ && steps == 0;
+    if (body.stays_dry) {
         ++skipped_.dry_bodies;
         body.streams.rotation = body.rotation;
         sum_forces(body, def_.fluid);
         return;
     }
-    SurfaceView view = view_from(body, dt);
+    SurfaceView view = view_from(body, dt, steps);
     view.waits = water_waits;
-    const bool spread = (def_.model & model_displacement) != 0;
-    bool deep = false;
-    if (body.footprint) {
-        deep = spread && def_.skip & skip_deep_bodies &&
-               body.footprint->is_deep(view.level - dot(body.rotation.row2, body.centre()) - body.radius());
-        const Vec3f centre = body.rotation.to_world(body.centre());
-        const GridOrigin at = water_->origin_at(body.def.pose.position.x + static_cast<double>(centre.x),
-                                                body.def.pose.position.y + static_cast<double>(centre.y));
-        body.footprint->begin(at.i, at.j, view.origin, spread ? &water_->field : nullptr);
-    }
-    body.pushes = !deep;
     measure_wet_surface(body, view, def_.fluid, def_.skip);
-    if (body.footprint) {
-        if (deep)
-            leave_displacement(body);
-        else
-            lay_displacement(body, view.level, spread, (def_.skip & skip_still_bodies) != 0);
-        skipped_.still_bodies += body.footprint->kept();
-        skipped_.deep_bodies += deep;
-    }
     body.budget = {def_.error_budget, time_budget};
     look_up_resistance(body, view, def_.fluid, dt, def_.model, def_.skip);
     skipped_.whole_bodies += body.by_one_evaluation;
@@ -218,8 +254,9 @@ bool World::tick(float dt) {
 
     bool diverged = false;
     skipped_ = {0, 0, 0, 0, 0, skipped_.water_waits + waits};
+    for (const auto& body : bodies_) place_body(*body);
     for (const auto& body : bodies_) {
-        tick_body(*body, dt, time_each, waits);
+        tick_body(*body, dt, time_each, waves.steps);
         if (!body->water_finite || !finite(body->forces)) {
             forget_forces(*body);
             diverged = true;
@@ -246,11 +283,7 @@ void World::calm_water() {
     for (const auto& body : bodies_) body->footprint->own.calm();
 }
 
-// What bodies displace rises at once, also where the water waits: a floating body whose own wave came a step late was
-// driven by it.
 void World::move_water(const WaveTime& waves) {
-    if (def_.model & model_displacement)
-        for (const auto& body : bodies_) displace_water(*body->footprint, water_->field);
     if (waves.steps > 0) step_waves(waves);
     for (const auto& body : bodies_) body->footprint->end();
 }
@@ -259,13 +292,13 @@ void World::step_waves(const WaveTime& waves) {
     Field& field = water_->field;
     const bool displaces = (def_.model & model_displacement) != 0, own_waves = (def_.model & model_own_waves) != 0;
     const float step = waves.time / static_cast<float>(waves.steps), push = step / def_.fluid.density;
-    const float gravity = def_.fluid.gravity;
+    const float gravity = def_.fluid.gravity, most = def_.fluid.density * gravity * field.def().depth;
     if (water_->take_start()) field.start_from_rest(step, gravity);
     pushes_.clear();
     const Rect all{0, 0, field.def().nx, field.def().ny};
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
     for (const auto& body : bodies_) {
-        body->footprint->gather_pressure();
+        body->footprint->gather_pressure(most);
         if (!body->footprint->pressed().empty()) pushes_.push_back(push_on_water(*body->footprint, push));
     }
     // Where the velocity inside a body is forced, that is before each step.

@@ -89,11 +89,13 @@ private:
         bool waited = false;  ///< in ticks before
     };
     WaveTime time_waves(float dt) const;
-    SurfaceView view_from(const Body& body, float dt) const;
+    SurfaceView view_from(const Body& body, float dt, std::uint32_t steps) const;
     bool has_budget() const { return def_.error_budget > 0 || def_.time_budget > 0; }
+    float share_over_water(const Body& body, const GridOrigin& centre) const;
     bool rests_around(const Body& body, const SurfaceView& view) const;
     bool cannot_be_wet(const Body& body) const;
-    void tick_body(Body& body, float dt, float time_budget, bool water_waits);
+    void place_body(Body& body);
+    void tick_body(Body& body, float dt, float time_budget, std::uint32_t steps);
     void give_footprint(Body& body);
     void move_water(const WaveTime& waves);
     void step_waves(const WaveTime& waves);

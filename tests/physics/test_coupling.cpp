@@ -76,6 +76,24 @@ TEST_CASE("the displaced volume is in the water whatever the cells, the depth an
     }
 }
 
+TEST_CASE("a body that sinks beside a basin does not raise it", "[coupling]") {
+    World world = test::world_of();
+    Water& water = world.create_water(test::water_of(64, 0.05f, 1.0f, Border::reflecting));
+    Body& beside = world.create_body(body_of(slab_map(), {4.0, 0, 0.5}));  // so far that no spline reaches the basin
+    for (int t = 0; t < 300; ++t) {
+        world.set_motion(beside, {{4.0, 0, 0.5 - 0.05 * t}, {}}, {});
+        world.tick(0.002f);
+    }
+    CHECK(volume(water.field) == 0);
+    // Brought over the basin it raises it, by all of its volume; over the rim, by half of it.
+    world.set_motion(beside, {{0, 0, -14}, {}}, {});
+    world.tick(0.002f);
+    CHECK(volume(water.field) == Approx(0.3 * 0.3 * 0.1).epsilon(0.01));
+    world.set_motion(beside, {{1.6, 0, -14}, {}}, {});
+    world.tick(0.002f);
+    CHECK(volume(water.field) == Approx(0.5 * 0.3 * 0.3 * 0.1).epsilon(0.01));
+}
+
 TEST_CASE("putting a body in and taking it out again and again leaves the water as it was", "[coupling]") {
     World world = test::world_of();
     Water& water = world.create_water(test::water_of(64, 0.025f, 0.3f, Border::reflecting));

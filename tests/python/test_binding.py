@@ -386,6 +386,9 @@ def test_body(context, map_path, arrays):
     assert forces.gravity.force.z == pytest.approx(-1.2 * 9.80665, rel=1e-6)
     state = body.state()
     assert state.wet_area > 0 and state.twist.linear.x == 0.5
+    coefficients = body.coefficients()
+    assert 0 < coefficients.wet_share <= 1 and coefficients.damping[0] > -forces.pressure.force.x / 0.5
+    assert coefficients.added_mass[0] == pytest.approx(coefficients.wet_share * map.added_mass()[0][0], rel=1e-5)
     sources = body.sources()
     assert len(sources) == map.info().sources
     if arrays == "numpy":

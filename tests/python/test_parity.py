@@ -64,8 +64,8 @@ class Header:
         for declaration in filter(None, map(str.strip, body.split(";"))):
             if match := re.fullmatch(r"([\w ]+?\*?) ?\( ?FRM_CALL \*(\w+)\)\((.*)\)", declaration):
                 fields.append((match[2], self._callback(match[1], match[3])))
-            elif match := re.fullmatch(r"char (\w+)\[(\d+)\]", declaration):
-                fields.append((match[1], ctypes.c_char * int(match[2])))
+            elif match := re.fullmatch(r"(char|double) (\w+)\[(\d+)\]", declaration):
+                fields.append((match[2], getattr(ctypes, f"c_{match[1]}") * int(match[3])))
             else:
                 kind, names = re.fullmatch(r"((?:const )?\w+ \**)(.*)", declaration).groups()
                 fields += [(name.strip(), self.type(kind)) for name in names.split(",")]

@@ -245,6 +245,11 @@ class BodyState(Struct):
                 ("twist", Twist)]
 
 
+class Coefficients(Struct):
+    _fields_ = [("struct_size", c_uint32), ("wet_share", c_float), ("added_mass", c_double * 36),
+                ("damping", c_double * 36)]
+
+
 class SourceState(Struct):
     _fields_ = [("position", Position), ("force", Vec3), ("relative_velocity", Vec3), ("wet_ratio", c_float),
                 ("map_time", c_float)]
@@ -330,7 +335,7 @@ class ReplayStepResult(Struct):
 ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, Part)
 
 STRUCTS = (Vec3, Position, Quaternion, Pose, Twist, Wrench, ContextDef, MapInfo, MapSource, WorldDef,
-           WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, SourceState, DeviceInfo,
+           WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, Coefficients, SourceState, DeviceInfo,
            DeviceCommand, DeviceState, DeviceDriver, RecorderDef, RecorderStats, ReplayInfo, ReplayTolerance,
            ReplayStepResult)
 
@@ -384,6 +389,7 @@ FUNCTIONS = {
     "frm_body_set_motion": (frm_status, (frm_body, POINTER(Pose), POINTER(Twist))),
     "frm_body_get_forces": (frm_status, (frm_body, POINTER(Forces))),
     "frm_body_get_state": (frm_status, (frm_body, POINTER(BodyState))),
+    "frm_body_get_coefficients": (frm_status, (frm_body, POINTER(Coefficients))),
     "frm_body_get_sources": (frm_status, (frm_body, POINTER(SourceState), c_uint32, _u32)),
 
     "frm_device_enumerate": (frm_status, (frm_context, POINTER(DeviceDriver), c_void_p, POINTER(DeviceInfo),

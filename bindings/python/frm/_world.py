@@ -6,7 +6,7 @@ from ctypes import byref, c_double, c_float, c_uint32
 from typing import NamedTuple
 
 from . import _abi, _buffers
-from ._abi import (BodyDef, BodyState, Forces, MapInfo, MapSource, Pose, SourceState, Twist, WaterDef,
+from ._abi import (BodyDef, BodyState, Coefficients, Forces, MapInfo, MapSource, Pose, SourceState, Twist, WaterDef,
                    WaterState, WorldDef, WorldStats)
 from ._base import Context, Error, Object, definition_of, two_calls, utf8, wrap
 
@@ -189,6 +189,11 @@ class Body(Object):
     def state(self) -> BodyState:
         """How wet the body is, and how fast it goes through the water."""
         return self._filled(BodyState, self._lib.frm_body_get_state)
+
+    def coefficients(self) -> Coefficients:
+        """Added mass and damping at the last tick, each 36 numbers, row after row: solve (M + added_mass + dt damping) dv =
+        dt F for the change of velocity and angular velocity of a body that floats (samples/float.py)."""
+        return self._filled(Coefficients, self._lib.frm_body_get_coefficients)
 
     def sources(self):
         """The sources after the last tick, in the world frame.

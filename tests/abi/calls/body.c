@@ -132,6 +132,35 @@ static void motion(void) {
 
 static int finite_vec3(frm_vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
+static frm_status fill_coefficients(void *c) { return frm_body_get_coefficients(f.body, (frm_coefficients *)c); }
+
+/* After forces_and_state: towed along x at 0.5 m/s, all under water. */
+static void coefficients(void) {
+    frm_coefficients c = {sizeof c};
+    frm_forces forces = {sizeof forces};
+    double added_mass[36], drag;
+    int i, j;
+    check_filled("frm_coefficients", sizeof(frm_coefficients), fill_coefficients);
+    OK(frm_body_get_coefficients(f.body, &c));
+    CHECK(c.wet_share > 0.999f && c.wet_share < 1.001f);
+    OK(frm_map_get_added_mass(f.map, 1000.0f, 1.0f, added_mass));
+    for (i = 0; i < 6; ++i) {
+        for (j = 0; j < 6; ++j) {
+            /* The body is not turned against the world. */
+            CHECK(fabs(c.added_mass[6 * i + j] - added_mass[6 * i + j]) <= 1e-5 * fabs(added_mass[6 * i + j]) + 1e-9);
+            CHECK(c.added_mass[6 * i + j] == c.added_mass[6 * j + i] && c.damping[6 * i + j] == c.damping[6 * j + i]);
+            CHECK(isfinite(c.damping[6 * i + j]));
+        }
+        CHECK(c.damping[7 * i] >= 0);
+    }
+    /* Drag goes with the square of the speed, so it grows by twice itself over the speed, and no part of it less. */
+    OK(frm_body_get_forces(f.body, &forces));
+    drag = -(double)forces.pressure.force.x;
+    CHECK(c.damping[0] > 1.8 * drag / 0.5 && c.damping[0] < 10 * drag / 0.5);
+    REFUSED(FRM_ERROR_ARGUMENT, "coefficients", frm_body_get_coefficients(f.body, NULL));
+    REFUSED_HANDLES(f.stale_body, f.water, frm_body_get_coefficients(h, &c));
+}
+
 static void forces_and_state(void) {
     frm_forces forces = {sizeof forces};
     frm_body_state state = {sizeof state};
@@ -199,6 +228,7 @@ void call_body(void) {
     check_filled("frm_body_state", sizeof(frm_body_state), fill_state);
     motion();
     forces_and_state();
+    coefficients();
     sources();
     REFUSED_HANDLES(f.stale_body, f.map, frm_body_destroy(h));
 }

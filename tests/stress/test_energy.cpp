@@ -1,0 +1,145 @@
+// No energy comes from nothing: drag takes work over every closed motion, and waves never have more energy than the work
+// that was done on the water.
+#include "tests/stress/floating.h"
+#include "tests/stress/seed.h"
+#include "tests/support/catch.h"
+
+using namespace frm;
+using namespace frm::test;
+
+namespace {
+
+/// A closed motion: each of six coordinates is a sum of three sines whose periods divide the whole.
+struct ClosedMotion {
+    double period;
+    double amplitude[6][3], phase[6][3];
+    int turns[6][3];
+    Vec3d centre;
+
+    ClosedMotion(Random& random, const Vec3d& around, double length, double angle)
+        : period(random.range(1, 10)), centre(around) {
+        for (int k = 0; k < 6; ++k)
+            for (int j = 0; j < 3; ++j) {
+                amplitude[k][j] = random.uniform(-1, 1) * (k < 3 ? length : angle);
+                phase[k][j] = random.uniform(0, 6.283185307179586);
+                turns[k][j] = 1 + static_cast<int>(random.below(6));
+            }
+    }
+
+    Pose pose(double t) const {
+        double x[6] = {};
+        for (int k = 0; k < 6; ++k)
+            for (int j = 0; j < 3; ++j)
+                x[k] += amplitude[k][j] *
+                        (std::sin(6.283185307179586 * turns[k][j] * t / period + phase[k][j]) - std::sin(phase[k][j]));
+        const Vec3d turn(x[3], x[4], x[5]);
+        return {centre + Vec3d(x[0], x[1], x[2]), length(turn) > 0 ? turned(turn, length(turn)) : Quat<float>{}};
+    }
+};
+
+/// The small motion from one pose to another: m and rad.
+void between(const Pose& from, const Pose& to, Vec3d& moved, Vec3d& turned_by) {
+    moved = to.position - from.position;
+    const Quat<float> q = to.rotation * conjugate(from.rotation);
+    turned_by = Vec3d(Vec3f(q.x, q.y, q.z)) * (q.w < 0 ? -2.0 : 2.0);
+}
+
+struct Work {
+    double total = 0, drag = 0,
+           against = 0;  ///< J, done on the body by the water; `against`: the drag's, each tick's size
+};
+
+/// Goes along the motion once, as far as a pose a tick shows it.
+Work go_round(World& world, Body& body, const ClosedMotion& motion, std::uint32_t ticks) {
+    Work work;
+    const double dt = motion.period / ticks;
+    for (std::uint32_t n = 0; n < ticks; ++n) {
+        const Pose now = motion.pose(n * dt), next = motion.pose((n + 1) * dt), before = motion.pose((n - 1.0) * dt);
+        Vec3d moved, turn, v, w;
+        between(now, next, moved, turn);
+        between(before, next, v, w);
+        world.set_motion(body, now, {Vec3f(v / (2 * dt)), Vec3f(w / (2 * dt))});
+        REQUIRE(world.tick(static_cast<float>(dt)));
+        const auto by = [&](const Wrench& f) { return dot(Vec3d(f.force), moved) + dot(Vec3d(f.torque), turn); };
+        const double drag = by(body.forces.pressure) + by(body.forces.friction);
+        work.total += by(body.forces.total);
+        work.drag += drag;
+        work.against += std::fabs(drag);
+    }
+    // Back where it was, at rest.
+    world.set_motion(body, motion.pose(motion.period), {});
+    world.tick(static_cast<float>(dt));
+    return work;
+}
+
+/// With a spin table that brakes: on each source against the velocity that the turning gives it.
+std::shared_ptr<const Map> spin_map() {
+    Map map = bake::formula_map(fine_box({0.3, 0.1, 0.2}, 0.06), 18, 2, 32);
+    map.spin.rate = 2;
+    const DirectionSet axes(1);
+    for (std::uint32_t a = 0; a < 6; ++a)
+        for (const Source& s : map.sources) {
+            const Vec3f v = cross(Vec3f(axes.direction(a)), s.position);
+            map.spin.force.push_back({v * -3.0f, v * -0.1f});
+        }
+    map.complete();
+    return std::make_shared<Map>(std::move(map));
+}
+
+}  // namespace
+
+TEST_CASE("drag takes work over every closed motion in still water", "[stress]") {
+    const std::shared_ptr<const Map> maps[] = {map_of(fine_box({0.3, 0.3, 0.3}, 0.1), 18),
+                                               map_of(fine_box({0.4, 0.02, 0.2}, 0.05), 12),
+                                               map_of(icosphere(0.15, 2), 24, 1), spin_map()};
+    Patience patience(static_cast<double>(setting("FRM_STRESS_SECONDS", 3)), 8);
+    int motions = 0;
+    for (std::uint64_t seed = stress_seed(); patience.more(); ++seed, ++motions) {
+        Random random(seed);
+        WorldDef def;
+        def.everywhere = random.once_in(3);
+        if (random.once_in(2)) def.skip = skip_nothing;
+        World world = world_of(def);
+        const double scale = random.range(0.05, 20);
+        const double height = def.everywhere ? 0 : random.uniform(-0.4, 0.2) * scale;
+        const ClosedMotion motion(random, {0, 0, height}, random.range(0.01, 1) * scale, random.range(0.01, 2));
+        BodyDef body = body_of(maps[random.below(4)], motion.pose(0).position, motion.pose(0).rotation);
+        body.scale = static_cast<float>(scale);
+        Body& moved = world.create_body(body);
+        INFO("FRM_STRESS_SEED=" << seed);
+        for (int round = 0; round < 2; ++round) {
+            const Work work = go_round(world, moved, motion, 2000);
+            REQUIRE(work.drag <= 0);
+            // All but a little of it is braking, tick by tick: what is not comes from between stored directions.
+            REQUIRE(work.drag <= -0.9 * work.against);
+        }
+    }
+    std::printf("stress: %d closed motions\n", motions);
+}
+
+TEST_CASE("waves have no more energy than the work that was done on the water", "[stress]") {
+    const auto map = map_of(fine_box({0.3, 0.3, 0.18}, 0.075), 18);
+    Patience patience(static_cast<double>(setting("FRM_STRESS_SECONDS", 4)), 4);
+    double most = 0;
+    int motions = 0;
+    for (std::uint64_t seed = stress_seed(); patience.more(); ++seed, ++motions) {
+        Random random(seed);
+        WorldDef def;
+        if (random.once_in(2)) def.skip = skip_nothing;
+        World world = world_of(def);
+        Water& water = world.create_water(water_of(64, 0.05f, static_cast<float>(random.range(0.2, 3)),
+                                                   random.once_in(3) ? Border::absorbing : Border::reflecting, 0));
+        const ClosedMotion motion(random, {0, 0, random.uniform(-0.3, 0.05)}, random.range(0.01, 0.15),
+                                  random.range(0.01, 0.4));
+        Body& body = world.create_body(body_of(map, motion.pose(0).position, motion.pose(0).rotation));
+        const double dt = random.range(0.001, 1.0 / 60);
+        const Work work = go_round(world, body, motion, static_cast<std::uint32_t>(motion.period / dt));
+        const double waves = water_energy(water.field, def.fluid);
+        INFO("FRM_STRESS_SEED=" << seed << " dt " << dt << " depth " << water.def().field.depth << " work "
+                                << -work.total << " waves " << waves);
+        REQUIRE(-work.total > 0);
+        REQUIRE(waves <= -work.total);
+        most = std::max(most, waves / -work.total);
+    }
+    std::printf("stress: waves kept at most %.2f of the work of %d motions\n", most, motions);
+}
