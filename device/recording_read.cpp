@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/file.h"
 #include "device/recording.h"
 
 namespace frm::device {
@@ -190,7 +191,7 @@ constexpr std::uint64_t largest_block = std::uint64_t{1} << 31;
 }  // namespace
 
 RecordingReader::RecordingReader(const char* path) : path_(path) {
-    std::FILE* file = std::fopen(path, "rb");
+    std::FILE* file = open_file(path, "rb");
     if (!file) throw Error(FRM_ERROR_FILE, "%s: %s", path, std::strerror(errno));
     std::uint8_t block[1 << 16];
     std::size_t got;

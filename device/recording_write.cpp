@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/file.h"
 #include "device/recording.h"
 
 namespace frm::device {
@@ -96,7 +97,7 @@ constexpr std::size_t bytes_a_block = std::size_t{1} << 18;
 }  // namespace
 
 RecordingWriter::RecordingWriter(const char* path) : path_(path), part_(path_ + ".part") {
-    file_ = std::fopen(part_.c_str(), "wb");
+    file_ = open_file(part_.c_str(), "wb");
     if (!file_) throw Error(FRM_ERROR_FILE, "%s: %s", part_.c_str(), std::strerror(errno));
     Writer w(raw_);
     w.bytes(recording_magic, sizeof recording_magic);
@@ -148,7 +149,7 @@ void RecordingWriter::close() {
     flush();
     if (std::fclose(file_) != 0 && failure_ == 0) failure_ = errno;
     file_ = nullptr;
-    if (failure_ == 0 && std::rename(part_.c_str(), path_.c_str()) != 0) failure_ = errno;
+    if (failure_ == 0) failure_ = replace_file(part_.c_str(), path_.c_str());
     if (failure_ != 0)
         throw Error(FRM_ERROR_FILE, "%s: %s; what was written is in %s", path_.c_str(), std::strerror(failure_),
                     part_.c_str());
