@@ -10,6 +10,10 @@ install(TARGETS frm EXPORT frmTargets
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}"
     INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+if(NOT frm_can_share)
+    # What a static library is linked with must be there to be linked.
+    install(TARGETS frm_zstd frm_openmp EXPORT frmTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+endif()
 install(FILES "${PROJECT_SOURCE_DIR}/include/frm.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 
 if(TARGET frm_bake_shared)

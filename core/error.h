@@ -7,12 +7,19 @@
 
 #include "frm.h"
 
+// mingw has two printfs; C++ has the standard's.
+#if defined(__MINGW32__) && !defined(__clang__)
+#define FRM_PRINTF gnu_printf
+#else
+#define FRM_PRINTF printf
+#endif
+
 namespace frm {
 
 /// Holds its text itself, so that reporting an error needs no memory of the caller's allocator.
 class Error {
 public:
-    [[gnu::format(printf, 3, 4)]] Error(frm_status status, const char* format, ...) : status_(status) {
+    [[gnu::format(FRM_PRINTF, 3, 4)]] Error(frm_status status, const char* format, ...) : status_(status) {
         va_list arguments;
         va_start(arguments, format);
         std::vsnprintf(text_, sizeof text_, format, arguments);

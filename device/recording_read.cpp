@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/file.h"
 #include "device/recording_columns.h"
 
 namespace frm::device {
@@ -204,7 +205,7 @@ constexpr std::size_t file_header_bytes = 16, old_block_header_bytes = 24, block
 }  // namespace
 
 RecordingReader::RecordingReader(const char* path) : path_(path), columns_(std::make_unique<ColumnReader>()) {
-    file_ = std::fopen(path, "rb");
+    file_ = open_file(path, "rb");
     if (!file_) throw Error(FRM_ERROR_FILE, "%s: %s", path, std::strerror(errno));
     try {
         if (std::fseek(file_, 0, SEEK_END) != 0 || std::ftell(file_) < 0)

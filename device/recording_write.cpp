@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/file.h"
 #include "device/recording_columns.h"
 
 namespace frm::device {
@@ -81,7 +82,7 @@ void put_place(Writer& w, const BlockPlace& place) {
 
 RecordingWriter::RecordingWriter(const char* path)
     : path_(path), part_(path_ + ".part"), columns_(std::make_unique<ColumnWriter>()) {
-    file_ = std::fopen(part_.c_str(), "wb");
+    file_ = open_file(part_.c_str(), "wb");
     if (!file_) throw Error(FRM_ERROR_FILE, "%s: %s", part_.c_str(), std::strerror(errno));
     std::vector<std::uint8_t> head;
     Writer w(head);
@@ -201,7 +202,7 @@ void RecordingWriter::close() {
     if (failure_ == 0 && std::fflush(file_) != 0) failure_ = errno;
     if (std::fclose(file_) != 0 && failure_ == 0) failure_ = errno;
     file_ = nullptr;
-    if (failure_ == 0 && std::rename(part_.c_str(), path_.c_str()) != 0) failure_ = errno;
+    if (failure_ == 0) failure_ = replace_file(part_.c_str(), path_.c_str());
     if (failure_ != 0)
         throw Error(FRM_ERROR_FILE, "%s: %s; what was written is in %s", path_.c_str(), std::strerror(failure_),
                     part_.c_str());

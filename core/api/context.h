@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/api/axes.h"
-#include "core/api/floating_point.h"
 #include "core/error.h"
+#include "core/math/floating_point.h"
 #include "frm.h"
 
 namespace frm::api {
@@ -77,7 +77,7 @@ public:
 
     void fail(const char* text);
     void copy_error(char* text, std::size_t capacity, std::uint64_t& size);
-    [[gnu::format(printf, 3, 4)]] void log(frm_log_level level, const char* format, ...);
+    [[gnu::format(FRM_PRINTF, 3, 4)]] void log(frm_log_level level, const char* format, ...);
     void poll_log(std::uint32_t* level, char* text, std::uint64_t capacity, std::uint64_t* size);
 
 private:

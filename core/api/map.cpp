@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/api/objects.h"
+#include "core/file.h"
 #include "core/map/codec.h"
 
 namespace frm::api {
@@ -16,7 +17,7 @@ std::shared_ptr<const Map> read_map(Context& context, const std::uint8_t* data, 
 namespace {
 
 std::pmr::vector<std::uint8_t> read_file(Context& context, const char* path) {
-    std::FILE* file = std::fopen(path, "rb");
+    std::FILE* file = open_file(path, "rb");
     if (!file) throw Error(FRM_ERROR_FILE, "%s: %s", path, std::strerror(errno));
     std::pmr::vector<std::uint8_t> bytes(context.memory());
     std::uint8_t block[1 << 16];

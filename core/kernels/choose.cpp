@@ -1,3 +1,6 @@
+#include <atomic>
+#include <cstring>
+
 #include "core/kernels/kernels.h"
 
 namespace frm {
@@ -25,12 +28,29 @@ std::size_t every_kernel_set(const Kernels* (&sets)[max_kernel_sets]) {
     return count;
 }
 
-const Kernels& kernels() {
-    static const Kernels& best = []() -> const Kernels& {
+namespace {
+
+std::atomic<const Kernels*>& chosen() {
+    static std::atomic<const Kernels*> set{[] {
         const Kernels* sets[max_kernel_sets];
-        return *sets[every_kernel_set(sets) - 1];
-    }();
-    return best;
+        return sets[every_kernel_set(sets) - 1];
+    }()};
+    return set;
+}
+
+}  // namespace
+
+const Kernels& kernels() { return *chosen().load(std::memory_order_relaxed); }
+
+bool use_kernels(const char* instructions) {
+    const Kernels* sets[max_kernel_sets];
+    const std::size_t count = every_kernel_set(sets);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (std::strcmp(sets[i]->instructions, instructions) != 0) continue;
+        chosen().store(sets[i], std::memory_order_relaxed);
+        return true;
+    }
+    return false;
 }
 
 }  // namespace frm

@@ -84,8 +84,11 @@ struct Kernels {
                           LookupSum& total);
 };
 
-/// The best for this machine; the same on every call.
+/// The best for this machine, unless use_kernels said otherwise.
 const Kernels& kernels();
+
+/// For tests: kernels() gives the set of this name from now on. False, and nothing changed, if this machine has none such.
+bool use_kernels(const char* instructions);
 
 /// All that this machine can run, the baseline first: for tests and benchmarks. Returns how many.
 constexpr std::size_t max_kernel_sets = 3;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <string>
 
 namespace frm {
@@ -41,6 +42,19 @@ public:
             std::uint32_t word;
             std::memcpy(&word, bytes, sizeof word);
             lane_[0] = (lane_[0] ^ word) * fnv_prime;
+        }
+    }
+    /// Numbers any of which may be none. Processors differ in the bits of what comes of infinity - infinity, so all that are
+    /// none count as one.
+    void numbers(const float* values, std::size_t count) {
+        for (std::size_t i = 0; i < count; i += 64) {
+            float block[64];
+            const std::size_t size = count - i < 64 ? count - i : 64;
+            for (std::size_t k = 0; k < size; ++k) {
+                const float x = values[i + k];
+                block[k] = x == x ? x : std::numeric_limits<float>::quiet_NaN();
+            }
+            words(block, size);
         }
     }
     /// For structs and numbers without padding whose size is a multiple of four.

@@ -219,9 +219,9 @@ void Field::shift(std::int32_t di, std::int32_t dj) {
 
 void Field::hash(StateHash& hash) const {
     const auto nx = static_cast<std::size_t>(def_.nx);
-    for (std::int32_t j = 0; j < def_.ny; ++j) hash.words(height_row(j), nx);
-    for (std::int32_t j = 0; j < def_.ny; ++j) hash.words(velocity_x_row(j), nx + 1);
-    for (std::int32_t j = 0; j <= def_.ny; ++j) hash.words(velocity_y_row(j), nx);
+    for (std::int32_t j = 0; j < def_.ny; ++j) hash.numbers(height_row(j), nx);
+    for (std::int32_t j = 0; j < def_.ny; ++j) hash.numbers(velocity_x_row(j), nx + 1);
+    for (std::int32_t j = 0; j <= def_.ny; ++j) hash.numbers(velocity_y_row(j), nx);
     hash.value(level_);
     tiles_.hash(hash);
 }

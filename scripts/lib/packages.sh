@@ -10,7 +10,8 @@ packages_test=(catch2 python3-pytest)
 # shellcheck disable=SC2034
 packages_optional=(libmujoco-dev)
 # shellcheck disable=SC2034
-packages_full=(slurm-wlm munge openmpi-bin)
+packages_full=(slurm-wlm munge openmpi-bin clang libomp-dev qemu-user-static g++-aarch64-linux-gnu
+    g++-mingw-w64-x86-64-posix wine wine64 emscripten nodejs)
 
 # Always the system's Python: the packages above belong to it, and a version manager's python3 in PATH has none of them.
 # shellcheck disable=SC2034

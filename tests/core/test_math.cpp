@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "core/math/exponential.h"
@@ -76,4 +77,32 @@ TEST_CASE("the state hash sees every bit and the order", "[math]") {
     }
     CHECK(hash({1, 2}) != hash({2, 1}));
     CHECK(hash({0.0f}) != hash({-0.0f}));
+}
+
+TEST_CASE("numbers are hashed as words are, and all that are none as one", "[math]") {
+    const auto words = [](const std::vector<float>& values) {
+        StateHash h;
+        h.words(values.data(), values.size());
+        return h.result();
+    };
+    const auto numbers = [](const std::vector<float>& values) {
+        StateHash h;
+        h.numbers(values.data(), values.size());
+        return h.result();
+    };
+    std::vector<float> values;
+    for (int i = 0; i < 203; ++i) {
+        values.push_back(0.37f * static_cast<float>(i - 90));
+        CHECK(numbers(values) == words(values));
+    }
+    // infinity - infinity is the one on x86 and the other on ARM.
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    for (const std::size_t at : {std::size_t{0}, std::size_t{100}, values.size() - 1}) {
+        std::vector<float> one = values, other = values;
+        one[at] = none;
+        other[at] = std::copysign(none, -1.0f);
+        CHECK(words(one) != words(other));
+        CHECK(numbers(one) == numbers(other));
+        CHECK(numbers(one) != numbers(values));
+    }
 }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/kernels/kernels.h"
+#include "core/math/floating_point.h"
 #include "core/water/field.h"
 #include "tests/support/catch.h"
 #include "tests/support/worlds.h"
@@ -259,6 +260,32 @@ TEST_CASE("threads step large water to the same bits, at either order", "[wave_s
         CHECK(run(3) == one);
     }
 }
+
+#if defined(__SSE2__)
+TEST_CASE("threads that a host has had in modes of its own step water to the same bits", "[wave_step]") {
+    constexpr int threads = 3;
+    const auto every_thread = [](unsigned modes) {
+#pragma omp parallel num_threads(threads)
+        _mm_setcsr(modes);
+    };
+    const auto run = [](std::uint32_t count) {
+        const FloatingPointGuard modes;
+        Field field(def_of(544, 544, Border::reflecting, 0, 2), test::memory());
+        field.set_heights(rough(field.cells(), 4, 1e-38f).data());  // steps change it by denormal numbers
+        field.advance(0.007f, g, 5, nullptr, 0, count);
+        return hash_of(field);
+    };
+    const unsigned before = _mm_getcsr();
+    const std::uint64_t one = run(1);
+    every_thread(0x1F80 | 0x8040 | 0x6000);  // flush to zero, round towards zero
+    CHECK(run(threads) == one);
+    unsigned after[threads] = {};
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int t = 0; t < threads; ++t) after[t] = _mm_getcsr();
+    every_thread(before);
+    for (const unsigned modes : after) CHECK((modes & ~0x3Fu) == (0x1F80 | 0x8040 | 0x6000));
+}
+#endif
 
 TEST_CASE("calm tiles rest, wake, and change nothing above their threshold", "[wave_step]") {
     for (const std::int32_t order : {2, 4}) {

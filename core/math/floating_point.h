@@ -1,5 +1,5 @@
 // The caller's floating-point modes are saved at every entry and given back: a host that flushes denormals or rounds
-// down (any DSO linked with -ffast-math does) would otherwise change our bits, and we its.
+// down (any DSO linked with -ffast-math does) would otherwise change our bits, and we its. Threads have modes of their own.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace frm::api {
+namespace frm {
 
 class FloatingPointGuard {
 public:
@@ -34,6 +34,12 @@ private:
 
 private:
     std::uint64_t saved_;
+#elif defined(__wasm__)
+    // There are no modes.
+    FloatingPointGuard() {}
+    ~FloatingPointGuard() {}
+#else
+#error "which register holds this processor's floating-point modes?"
 #endif
 
 public:
@@ -41,4 +47,4 @@ public:
     FloatingPointGuard& operator=(const FloatingPointGuard&) = delete;
 };
 
-}  // namespace frm::api
+}  // namespace frm
