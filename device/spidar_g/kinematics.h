@@ -10,8 +10,8 @@ struct PoseFit {
     GripPose pose;
     StringRows rows;     ///< of that pose
     Lengths residual{};  ///< measured less fitted, m: positive where a string seems too long
-    Lengths
-        normalised_residual{};  ///< over sqrt(1 - leverage): the largest names the string that is wrong (Baarda 1968)
+    /// Over sqrt(1 - leverage): the largest names the string that is most likely wrong (Baarda 1968).
+    Lengths normalised_residual{};
     double residual_rms = 0;    ///< m
     int iterations = 0;
     bool converged = false;
