@@ -7,6 +7,7 @@
 #include "cli/bench_body.h"
 #include "cli/bench_lookup.h"
 #include "cli/bench_mujoco.h"
+#include "cli/bench_spidar.h"
 #include "cli/bench_tick.h"
 #include "cli/bench_waves.h"
 #include "cli/command.h"
@@ -125,6 +126,15 @@ void waves(const Options& o, Results& out) {
             "step of 64 x 64 cells with waves in 2048 x 2048", 3);
 }
 
+void spidar(const Options& o, Results& out) {
+    const SpidarTimes times = measure_spidar(o.seconds);
+    out.add("spidar_pose_us", times.pose, "us", "SPIDAR-G: pose from eight lengths at 1 m/s and 1 kHz", 10);
+    out.add("spidar_tensions_us", times.tensions, "us", "SPIDAR-G: tensions of a wrench that changes as the grip moves",
+            20);
+    out.add("spidar_tensions_worst_us", times.tensions_worst, "us",
+            "the same of wrenches that jump, half of them out of reach, 99 %", 20);
+}
+
 void flow(const Options& o, Results& out) {
     const bake::FlowSpeed speed = bake::measure_flow_speed(o.seconds, 0);
     out.add("flow_inplace_bandwidth", speed.bandwidth, "GB/s", "memory read and written in place, all cores");
@@ -141,6 +151,7 @@ void run(const Options& o) {
     ticks(o, large, results);
     parts(o, large, results);
     waves(o, results);
+    spidar(o, results);
     flow(o, results);
     if (o.json) std::printf("%s\n", results.json().dump(2).c_str());
 }

@@ -12,7 +12,7 @@ struct PoseFit {
     Lengths residual{};  ///< measured less fitted, m: positive where a string seems too long
     /// Over sqrt(1 - leverage): the largest names the string that is most likely wrong (Baarda 1968).
     Lengths normalised_residual{};
-    double residual_rms = 0;    ///< m
+    double residual_rms = 0;  ///< m
     int iterations = 0;
     bool converged = false;
 };

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
+#include "device/spidar_g/loaded_library.h"
 #include "tests/device/usb_bus.h"
 #include "tests/support/library.h"
 
@@ -82,6 +84,19 @@ const Json simple = {{"amplifier", "simple"}};
 const Json hid = {{"amplifier", "simple"}, {"bus", "hid"}, {"vendor", "04D8"}, {"product", "003F"}};
 
 }  // namespace
+
+TEST_CASE("a library that is not installed is said to be missing", "[bus]") {
+    try {
+        const frm::spidar_g::LoadedLibrary library({"libfrm-is-not-there.so.7", "nor-is-this.so"}, "libsomething");
+        FAIL("loaded");
+    } catch (const frm::Error& e) {
+        CHECK(e.status() == FRM_ERROR_UNSUPPORTED);
+        CHECK(std::string(e.text()).find("libsomething is not installed") == 0);
+    }
+    const frm::spidar_g::LoadedLibrary library({"libfrm-is-not-there.so.7", "libusb-1.0.so.0"}, "libusb-1.0");
+    void (*function)() = nullptr;
+    CHECK_THROWS_AS(library.find("libusb_fly", function), frm::Error);
+}
 
 TEST_CASE("amplifiers on USB are found by their rotary switch", "[bus]") {
     UsbBus bus;
