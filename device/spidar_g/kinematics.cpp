@@ -11,8 +11,9 @@ namespace {
 // and is far too small to make the pose lag (1e-3 lags by 1 degree at 1 m/s).
 constexpr double damping = 1e-6;
 
-// Half a nanometre: thousandths of what an encoder sees.
-constexpr double small_step = 5e-10;
+// Steps shrink at least a thousandfold near the end, with lengths as wrong as the checks let pass: what is left after
+// one of a micrometre is below a thousandth of an encoder's count.
+constexpr double small_step = 1e-6;
 
 bool normal_matrix(const StringRows& rows, Cholesky<6>& factors) {
     double a[6][6];
@@ -68,21 +69,6 @@ PoseFit fit_pose(const Geometry& geometry, const Lengths& lengths, const GripPos
         fit.pose.rotation = turned(fit.pose.rotation, Vec3d(step[3], step[4], step[5]) / geometry.lever);
         good = string_rows(geometry, fit.pose, fit.rows);
         fit.converged = good && largest < small_step;
-    }
-    // Lengths that fit no pose well converge slowly; a last step below a micrometre is as good as the encoders are.
-    if (good && fit.iterations == pose_iterations && !fit.converged) {
-        Cholesky<6> again;
-        double step[6] = {}, squares = 0;
-        if (normal_matrix(fit.rows, again)) {
-            for (int s = 0; s < string_count; ++s)
-                for (int k = 0; k < 6; ++k)
-                    step[k] += fit.rows.row[s][k] *
-                               (fit.rows.length[static_cast<std::size_t>(s)] - lengths[static_cast<std::size_t>(s)]);
-            again.solve(step);
-            for (const double c : step) squares += c * c;
-            fit.converged = squares < 1e-12;
-            factors = again;
-        }
     }
     if (fit.converged) {
         judge(fit, lengths, factors);
