@@ -137,11 +137,13 @@ frm_status FRM_CALL close(void*, void* instance) {
 }
 
 frm_status FRM_CALL info(void*, void* instance, frm_device_info* out) {
+    const std::lock_guard<std::mutex> lock(of(instance).mutex);
     describe(*of(instance).device, *out);
     return FRM_OK;
 }
 
 frm_status FRM_CALL calibrate(void*, void* instance) {
+    if (of(instance).watchdog) of(instance).watchdog->disarm();
     const std::lock_guard<std::mutex> lock(of(instance).mutex);
     return of(instance).device->calibrate() ? FRM_OK : FRM_ERROR_DEVICE;
 }
@@ -183,6 +185,7 @@ const frm_device_driver& driver() {
 }
 
 std::size_t last_reply(void* instance, std::uint8_t* data, std::size_t capacity) {
+    const std::lock_guard<std::mutex> lock(of(instance).mutex);
     const Packet& reply = of(instance).device->last_reply();
     std::copy_n(reply.bytes.begin(), std::min(reply.size, capacity), data);
     return reply.size;

@@ -111,7 +111,9 @@ void SpidarG::took(std::uint64_t now) {
     if (fit.converged) {
         state_.pose = fit.pose;
         rows_ = fit.rows;
-        state_.twist = filter_.add(state_.pose, dt);
+        // Two cycles in quick succession, after a pause, must not make a velocity out of one count.
+        const double shortest = static_cast<double>(configuration_.period_ns) * 1e-10;
+        state_.twist = filter_.add(state_.pose, std::fmax(dt, shortest));
     } else {
         state_.twist = {};
         filter_.reset();
@@ -186,19 +188,19 @@ Tensions SpidarG::chosen(const GripWrench& wrench) {
 }
 
 GripState SpidarG::exchange(const GripWrench& wrench) {
-    const bool well = calibrated_;
     state_.achieved = {};
-    if (!cycle(chosen(wrench), &state_.achieved) || !well) state_.twist = {};
+    cycle(chosen(wrench), &state_.achieved);
     GripState out = state_;
+    if (!displays()) out.twist = {};
     if (!calibrated_) out.faults |= FRM_DEVICE_FAULT_UNCALIBRATED;
     out.faults |= deadline_passed_;
     deadline_passed_ = 0;
     return out;
 }
 
-void SpidarG::rest() {
+void SpidarG::rest(bool late) {
     ramp_ = 0;
-    deadline_passed_ = FRM_DEVICE_FAULT_DEADLINE;
+    if (late) deadline_passed_ = FRM_DEVICE_FAULT_DEADLINE;
     cycle(configuration_.limits.low, nullptr);
 }
 

@@ -40,8 +40,8 @@ public:
 
     /// One cycle: displays the wrench if all is well, the least tensions if not. Bounded by the transport's timeout.
     GripState exchange(const GripWrench& wrench);
-    /// One cycle with the least tensions; the next exchanges ramp up again and the first says that a deadline passed.
-    void rest();
+    /// One cycle with the least tensions; the next exchanges ramp up again. `late`: the first of them says so.
+    void rest(bool late);
     /// The grip is at the centre, unturned. Clears every latched fault. False if there is no answer.
     bool calibrate();
     /// The least tensions.

@@ -79,7 +79,7 @@ class UsbTransport final : public Transport {
 public:
     UsbTransport(std::shared_ptr<Session> session, libusb_device_handle* handle, std::uint64_t timeout_ns)
         : session_(std::move(session)), handle_(handle), timeout_ns_(timeout_ns) {
-        for (Transfer& t : transfers_) {
+        for (Transfer& t : *transfers_) {
             t.transfer = session_->usb.alloc_transfer(0);
             if (!t.transfer) {
                 release();
@@ -147,7 +147,8 @@ private:
             if (now >= until) return;
             timeval time{};
             time.tv_usec = static_cast<suseconds_t>(std::min<std::uint64_t>((until - now) / 1000 + 1, 500'000));
-            if (session_->usb.handle_events(session_->context, &time, &all_done_) != 0) return;
+            const int failure = session_->usb.handle_events(session_->context, &time, &all_done_);
+            if (failure != 0 && failure != LIBUSB_ERROR_INTERRUPTED) return;
         }
     }
 
@@ -158,17 +159,17 @@ private:
         Carried carried = Carried::whole;
         std::size_t used = 0;
         for (; used < request.count && carried == Carried::whole; ++used) {
-            transfers_[used].packet = request.packets[used];
-            carried = submit(transfers_[used], endpoint_out, request.packets[used].size);
+            (*transfers_)[used].packet = request.packets[used];
+            carried = submit((*transfers_)[used], endpoint_out, request.packets[used].size);
         }
-        Transfer& in = transfers_[2];
+        Transfer& in = (*transfers_)[2];
         // The bulk pipe counts in packets of 512 bytes: asking for less than comes is an overflow, which loses all.
         if (size > 0 && carried == Carried::whole) carried = submit(in, endpoint_in, largest_packet);
         const bool asked = size > 0 && carried == Carried::whole;
         if (carried == Carried::whole) wait(start + timeout);
         const bool late = pending_ > 0 && carried == Carried::whole;
         if (pending_ > 0) {
-            for (Transfer& t : transfers_)
+            for (Transfer& t : *transfers_)
                 if (!t.done) session_->usb.cancel_transfer(t.transfer);
             wait(steady_now_ns() + cancel_ns);
         }
@@ -177,9 +178,9 @@ private:
             lost_ = true;
             return Carried::unplugged;
         }
-        for (std::size_t i = 0; i < transfers_.size(); ++i) {
+        for (std::size_t i = 0; i < transfers_->size(); ++i) {
             if (i < 2 ? i >= used : !asked) continue;
-            switch (transfers_[i].transfer->status) {
+            switch ((*transfers_)[i].transfer->status) {
                 case LIBUSB_TRANSFER_NO_DEVICE:
                     lost_ = true;
                     return Carried::unplugged;
@@ -204,11 +205,11 @@ private:
     void release() {
         // A transfer that never came back still belongs to the kernel: better a leak than memory written to later.
         if (pending_ > 0) {
-            for (Transfer& t : transfers_) t.transfer = nullptr;
+            transfers_.release();
             new std::shared_ptr<Session>(session_);
             return;
         }
-        for (Transfer& t : transfers_)
+        for (Transfer& t : *transfers_)
             if (t.transfer) session_->usb.free_transfer(t.transfer);
         session_->usb.release_interface(handle_, interface_number);
         session_->usb.close(handle_);
@@ -217,7 +218,8 @@ private:
     std::shared_ptr<Session> session_;
     libusb_device_handle* handle_;
     std::uint64_t timeout_ns_;
-    std::array<Transfer, 3> transfers_;  ///< two out, one in
+    std::unique_ptr<std::array<Transfer, 3>> transfers_ =
+        std::make_unique<std::array<Transfer, 3>>();  ///< two out, one in
     int pending_ = 0, all_done_ = 0;
     bool lost_ = false;
 };

@@ -34,17 +34,14 @@ void Watchdog::run() {
     std::unique_lock<std::mutex> lock(sleep_);
     while (!ends_) {
         std::uint64_t sleep = rest_period_ns;
-        if (armed_.load(std::memory_order_relaxed)) {
-            const std::uint64_t due = due_ns_.load(std::memory_order_relaxed), at = steady_now_ns();
-            if (at < due) {
-                sleep = std::min(due - at, rest_period_ns);
-            } else {
-                const std::lock_guard<std::mutex> device(mutex_);
-                // An exchange may have come while this waited for it.
-                if (steady_now_ns() >= due_ns_.load(std::memory_order_relaxed) &&
-                    armed_.load(std::memory_order_relaxed))
-                    device_.rest();
-            }
+        const std::uint64_t due = due_ns_.load(std::memory_order_relaxed), at = steady_now_ns();
+        if (armed_.load(std::memory_order_relaxed) && at < due) {
+            sleep = std::min(due - at, rest_period_ns);
+        } else {
+            const std::lock_guard<std::mutex> device(mutex_);
+            // An exchange may have come while this waited for it.
+            const bool armed = armed_.load(std::memory_order_relaxed);
+            if (!armed || steady_now_ns() >= due_ns_.load(std::memory_order_relaxed)) device_.rest(armed);
         }
         wake_.wait_for(lock, std::chrono::nanoseconds(sleep), [this] { return ends_; });
     }

@@ -21,7 +21,7 @@ public:
 
     /// An exchange begins; the next one is expected within this.
     void exchanged(std::uint64_t deadline_ns);
-    /// Nobody is expected any more: the device was stopped.
+    /// Nobody is expected for now: the device was stopped or calibrated. Its counters are still followed.
     void disarm() { armed_.store(false, std::memory_order_relaxed); }
 
 private:

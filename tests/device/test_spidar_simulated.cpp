@@ -212,6 +212,52 @@ TEST_CASE("numbers that are none do not reach the motors", "[spidar_g]") {
     CHECK(s.run(3).faults == 0);
 }
 
+namespace {
+
+/// Answers with anything.
+class Noise final : public Transport {
+public:
+    void recover() override {}
+    Carried send(const Request&) override { return Carried::whole; }
+    Carried cycle(const Request& request, std::size_t size, Packet& reply) override {
+        for (std::size_t i = 0; i < request.count; ++i) last = request.packets[i];
+        for (auto& byte : reply.bytes) byte = static_cast<std::uint8_t>(random(0, 256));
+        reply.size = size;
+        return Carried::whole;
+    }
+    std::uint64_t now_ns() override { return now += static_cast<std::uint64_t>(random(0, 2e6)); }
+    bool runs_by_itself() const override { return true; }
+
+    Random random;
+    Packet last;
+    std::uint64_t now = 0;
+};
+
+}  // namespace
+
+TEST_CASE("replies of any bytes do no harm", "[spidar_g]") {
+    auto* noise = new Noise;
+    SpidarG device(load_configuration(nullptr), std::unique_ptr<Transport>(noise));
+    REQUIRE(device.begin());
+    int faulty = 0;
+    for (int k = 0; k < 3000; ++k) {
+        if (k % 10 == 0) device.calibrate();
+        const GripState state = device.exchange({{3, 4, 5}, {0.1, 0, 0}});
+        REQUIRE(std::isfinite(length(state.pose.position)));
+        REQUIRE(length(state.pose.position) < 1e6);
+        REQUIRE(length(state.twist.linear) < 1e4);
+        REQUIRE(length(state.twist.angular) < 1e4);
+        REQUIRE(std::isfinite(length(state.achieved.force)));
+        faulty += state.faults != 0;
+        for (std::size_t i = 0; i < string_count; ++i) {
+            const int digit =
+                static_cast<std::int16_t>(noise->last.bytes[2 + 2 * i] | noise->last.bytes[3 + 2 * i] << 8);
+            REQUIRE((digit >= 0 && digit <= 3032));
+        }
+    }
+    CHECK(faulty > 2900);
+}
+
 TEST_CASE("two simulated devices give the same bits", "[spidar_g]") {
     SimulatedSpidar a(moving()), b(moving());
     REQUIRE(a.device.calibrate());
