@@ -8,6 +8,7 @@
 #include "cli/bench_lookup.h"
 #include "cli/bench_mujoco.h"
 #include "cli/bench_record.h"
+#include "cli/bench_spidar.h"
 #include "cli/bench_tick.h"
 #include "cli/bench_waves.h"
 #include "cli/command.h"
@@ -135,6 +136,15 @@ void recording(const Options& o, const std::vector<std::uint8_t>& large, Results
     out.add("record_lost_events", cost.lost, "", "for which there was no room meanwhile");
 }
 
+void spidar(const Options& o, Results& out) {
+    const SpidarTimes times = measure_spidar(o.seconds);
+    out.add("spidar_pose_us", times.pose, "us", "SPIDAR-G: pose from eight lengths at 1 m/s and 1 kHz", 10);
+    out.add("spidar_tensions_us", times.tensions, "us", "SPIDAR-G: tensions of a wrench that changes as the grip moves",
+            20);
+    out.add("spidar_tensions_worst_us", times.tensions_worst, "us",
+            "the same of wrenches that jump, half of them out of reach, 99 %", 20);
+}
+
 void flow(const Options& o, Results& out) {
     const bake::FlowSpeed speed = bake::measure_flow_speed(o.seconds, 0);
     out.add("flow_inplace_bandwidth", speed.bandwidth, "GB/s", "memory read and written in place, all cores");
@@ -152,6 +162,7 @@ void run(const Options& o) {
     parts(o, large, results);
     waves(o, results);
     recording(o, large, results);
+    spidar(o, results);
     flow(o, results);
     if (o.json) std::printf("%s\n", results.json().dump(2).c_str());
 }

@@ -4,6 +4,7 @@
 #include "device/device.h"
 #include "device/recorder.h"
 #include "device/replay.h"
+#include "device/spidar_g/driver.h"
 
 using namespace frm;
 using namespace frm::api;
@@ -55,6 +56,36 @@ frm_status FRM_CALL frm_device_open_replay(frm_context context, const char* path
         require_pointer(device, "device");
         device::ReplaySource source{path, index, c.axes().host()};
         *device = c.add(Kind::device, c.make<Device>(device::replay_driver(), &source, 0u));
+    });
+}
+
+frm_status FRM_CALL frm_device_enumerate_spidar_g(frm_context context, const char* configuration, frm_device_info* list,
+                                                  uint32_t capacity, uint32_t* count) {
+    return with_context(context, [&](Context& c) {
+        require_pointer(count, "count");
+        spidar_g::Source source{configuration, -1, c.axes().host(), false};
+        std::uint32_t seen = 0;
+        spidar_g::driver().enumerate(&source, list, capacity, &seen);
+        *count = seen;
+    });
+}
+
+frm_status FRM_CALL frm_device_open_spidar_g(frm_context context, const char* configuration, int32_t rotary,
+                                             frm_device* device) {
+    return with_context(context, [&](Context& c) {
+        require_pointer(device, "device");
+        if (rotary < -1 || rotary > 15)
+            throw Error(FRM_ERROR_ARGUMENT, "rotary is %d; it is 0 to 15, or -1 for any", rotary);
+        spidar_g::Source source{configuration, rotary, c.axes().host(), false};
+        *device = c.add(Kind::device, c.make<Device>(spidar_g::driver(), &source, 0u));
+    });
+}
+
+frm_status FRM_CALL frm_device_open_simulated(frm_context context, const char* configuration, frm_device* device) {
+    return with_context(context, [&](Context& c) {
+        require_pointer(device, "device");
+        spidar_g::Source source{configuration, -1, c.axes().host(), true};
+        *device = c.add(Kind::device, c.make<Device>(spidar_g::driver(), &source, 0u));
     });
 }
 

@@ -59,6 +59,8 @@ frm_device_state Device::exchange(const api::Axes& axes, const frm_device_comman
     try {
         axes.pose_in(state.pose, "state.pose");
         axes.twist_in(state.twist, "state.twist");
+        if (!finite(state.achieved.force) || !finite(state.achieved.torque))
+            throw Error(FRM_ERROR_ARGUMENT, "state.achieved is not finite");
         if (!std::isfinite(state.grip)) throw Error(FRM_ERROR_ARGUMENT, "state.grip is not finite");
     } catch (const Error& error) {
         driver_.stop(user_, instance_);

@@ -99,7 +99,8 @@ enum {
     FRM_ERROR_DEVICE = -10,   /* a device's driver failed; the text says in which call and with what status */
     FRM_ERROR_END = -11,      /* a recording has no more to give */
     FRM_ERROR_INTERNAL = -12, /* a defect in this library; please report it with the last-error text */
-    FRM_ERROR_DIVERGED = -13  /* the waves or forces left the range of numbers; see frm_world_tick */
+    FRM_ERROR_DIVERGED = -13, /* the waves or forces left the range of numbers; see frm_world_tick */
+    FRM_ERROR_UNSUPPORTED = -14 /* this library was built without it, or a library that it needs is not installed */
 };
 
 /* The name of a status, such as "FRM_ERROR_HANDLE"; "FRM_UNKNOWN" for other values. Static text, never null. [any] */
@@ -579,6 +580,20 @@ typedef enum frm_device_status {
     FRM_DEVICE_FAULT = 2         /* forces are off until the cause is gone */
 } frm_device_status;
 
+/* Why a device is not ready, as bits of frm_device_state.faults. */
+typedef enum frm_device_fault {
+    FRM_DEVICE_FAULT_UNCALIBRATED = 1,    /* frm_device_calibrate has to come first */
+    FRM_DEVICE_FAULT_SHORT_PACKET = 2,    /* an answer was cut off */
+    FRM_DEVICE_FAULT_TIMEOUT = 4,         /* no answer in time */
+    FRM_DEVICE_FAULT_TRANSFER = 8,        /* the bus refused a transfer, or answered what cannot be */
+    FRM_DEVICE_FAULT_UNPLUGGED = 16,      /* it is gone: close it and open it anew */
+    FRM_DEVICE_FAULT_LOST_COUNT = 32,     /* too long between two answers: the encoders may have wrapped unseen */
+    FRM_DEVICE_FAULT_STUCK_ENCODER = 64,  /* a length stands still while the others say that it changes */
+    FRM_DEVICE_FAULT_SLACK_STRING = 128,  /* a string is longer than the way that it spans; passes when it is tight */
+    FRM_DEVICE_FAULT_BROKEN_STRING = 256, /* a string is shorter than the way that it spans, or runs off */
+    FRM_DEVICE_FAULT_DEADLINE = 512       /* no exchange within the deadline: it was in its safe state since */
+} frm_device_fault;
+
 typedef struct frm_device_info {
     uint32_t struct_size;
     uint32_t serial;
@@ -606,6 +621,9 @@ typedef struct frm_device_state {
     uint32_t buttons;  /* one bit each */
     uint64_t time_ns;  /* monotonic, the device's clock */
     uint64_t sequence; /* counts exchanges from 0 */
+    frm_wrench achieved; /* what the device was told to display for this exchange's command, within its limits */
+    uint32_t faults;     /* frm_device_fault, all that hold */
+    uint32_t reserved;
 } frm_device_state;
 
 /* A driver: any host can write one. `user` is the pointer given to frm_device_open; `instance` is what open made.
@@ -649,6 +667,27 @@ FRM_API frm_status FRM_CALL frm_device_open_null(frm_context context, frm_device
  * FRM_ERROR_STATE if the recording holds no such device, or was made with other axes than this context's. [offline] */
 FRM_API frm_status FRM_CALL frm_device_open_replay(frm_context context, const char *path, uint32_t index,
                                                    frm_device *device);
+
+/* The SPIDAR-G that answer, their rotary switch as serial: two-call rule; a capacity below the number fills what fits
+ * and is no error. Each is opened, asked and closed again; one that is open already is not seen. Errors are those of
+ * frm_device_open_spidar_g. [offline] */
+FRM_API frm_status FRM_CALL frm_device_enumerate_spidar_g(frm_context context, const char *configuration,
+                                                          frm_device_info *list, uint32_t capacity, uint32_t *count);
+
+/* Opens a SPIDAR-G, a grip on eight strings, through libusb or hidapi as its configuration says: a JSON file
+ * (docs/devices.md), or null for the built-in SpidarG6X3R on an SH4 amplifier. `rotary` is the switch on the
+ * amplifier, 0 to 15; -1 takes the first that answers. Strings show the least tension until frm_device_calibrate was
+ * called with the grip at the centre, unturned. Not yet run on hardware. FRM_ERROR_UNSUPPORTED: built without libusb
+ * or hidapi, or it is not installed; FRM_ERROR_FILE, FRM_ERROR_CORRUPT, FRM_ERROR_VERSION and FRM_ERROR_ARGUMENT: the
+ * configuration; FRM_ERROR_DEVICE: none answers. [offline] */
+FRM_API frm_status FRM_CALL frm_device_open_spidar_g(frm_context context, const char *configuration, int32_t rotary,
+                                                     frm_device *device);
+
+/* A simulated SPIDAR-G with strings, motors, encoders, its amplifier's packets and a hand that holds the grip: all of
+ * the driver but the bus runs. Its clock is that of its exchanges, one period each, so a deadline never passes.
+ * [offline] */
+FRM_API frm_status FRM_CALL frm_device_open_simulated(frm_context context, const char *configuration,
+                                                      frm_device *device);
 
 /* Stops the device and closes it. [owner] */
 FRM_API frm_status FRM_CALL frm_device_close(frm_device device);

@@ -248,6 +248,8 @@ const char* FRM_CALL frm_status_name(frm_status status) {
             return "FRM_ERROR_END";
         case FRM_ERROR_DIVERGED:
             return "FRM_ERROR_DIVERGED";
+        case FRM_ERROR_UNSUPPORTED:
+            return "FRM_ERROR_UNSUPPORTED";
         case FRM_ERROR_INTERNAL:
             return "FRM_ERROR_INTERNAL";
         default:

@@ -6,9 +6,10 @@ packages_build=(g++ cmake ninja-build pkg-config libzstd-dev libtinygltf-dev lib
     nlohmann-json3-dev python3 python3-matplotlib python3-numpy)
 # shellcheck disable=SC2034
 packages_test=(catch2 python3-pytest)
-# Not in every release; what needs one is left out without it (libmujoco-dev: a peer in `frm bench`).
+# Not in every release; what needs one is left out without it (libmujoco-dev: a peer in `frm bench`; libusb and hidapi: the
+# SPIDAR-G driver; umockdev: a USB bus for its tests).
 # shellcheck disable=SC2034
-packages_optional=(libmujoco-dev)
+packages_optional=(libmujoco-dev libusb-1.0-0-dev libhidapi-dev umockdev libumockdev-dev)
 # shellcheck disable=SC2034
 packages_full=(slurm-wlm munge openmpi-bin clang libomp-dev qemu-user-static g++-aarch64-linux-gnu
     g++-mingw-w64-x86-64-posix wine wine64 emscripten nodejs)

@@ -613,3 +613,28 @@ def test_recorded_device(context, tmp_path):
     assert caught.value.status == frm.ERROR_STATE
 
 
+
+
+def test_simulated_spidar_g(context):
+    with frm.Device.open_simulated(context) as device:
+        assert device.info().name == b"SpidarG6X3R (simulated)"
+        state = device.exchange()
+        assert state.faults == frm.DEVICE_FAULT_UNCALIBRATED and state.status == frm.DEVICE_UNCALIBRATED
+        device.calibrate()
+        for _ in range(1500):
+            state = device.exchange(((0, 0, 3), (0, 0, 0)))
+        assert state.faults == 0 and state.status == frm.DEVICE_READY
+        assert state.achieved.force.z == pytest.approx(3, abs=0.05)
+        assert state.pose.position.z > 0.01
+
+
+def test_spidar_g_configuration_errors(context, tmp_path):
+    path = tmp_path / "device.json"
+    path.write_text('{"format": "frm-spidar-g", "version": 1, "lever": -1}', encoding="utf-8")
+    for function in (frm.Device.open_spidar_g, frm.Device.open_simulated, frm.Device.enumerate_spidar_g):
+        with pytest.raises(frm.Error) as caught:
+            function(context, path)
+        assert caught.value.status == frm.ERROR_ARGUMENT and "lever" in str(caught.value)
+    with pytest.raises(frm.Error) as caught:
+        frm.Device.open_spidar_g(context, rotary=99)
+    assert caught.value.status == frm.ERROR_ARGUMENT

@@ -87,6 +87,7 @@ class Status(IntEnum):
     ERROR_END = -11
     ERROR_INTERNAL = -12
     ERROR_DIVERGED = -13
+    ERROR_UNSUPPORTED = -14
 
 
 # ---- Handles and plain values ------------------------------------------------------------------------------
@@ -263,6 +264,19 @@ class DeviceStatus(IntEnum):
     DEVICE_FAULT = 2
 
 
+class DeviceFault(IntEnum):
+    DEVICE_FAULT_UNCALIBRATED = 1
+    DEVICE_FAULT_SHORT_PACKET = 2
+    DEVICE_FAULT_TIMEOUT = 4
+    DEVICE_FAULT_TRANSFER = 8
+    DEVICE_FAULT_UNPLUGGED = 16
+    DEVICE_FAULT_LOST_COUNT = 32
+    DEVICE_FAULT_STUCK_ENCODER = 64
+    DEVICE_FAULT_SLACK_STRING = 128
+    DEVICE_FAULT_BROKEN_STRING = 256
+    DEVICE_FAULT_DEADLINE = 512
+
+
 class DeviceInfo(Struct):
     _fields_ = [("struct_size", c_uint32), ("serial", c_uint32), ("max_force", c_float),
                 ("max_torque", c_float), ("period_ns", c_uint64), ("name", c_char * 64)]
@@ -275,7 +289,8 @@ class DeviceCommand(Struct):
 
 class DeviceState(Struct):
     _fields_ = [("struct_size", c_uint32), ("status", c_uint32), ("pose", Pose), ("twist", Twist),
-                ("grip", c_float), ("buttons", c_uint32), ("time_ns", c_uint64), ("sequence", c_uint64)]
+                ("grip", c_float), ("buttons", c_uint32), ("time_ns", c_uint64), ("sequence", c_uint64),
+                ("achieved", Wrench), ("faults", c_uint32), ("reserved", c_uint32)]
 
 
 class DeviceDriver(Struct):
@@ -332,7 +347,8 @@ class ReplayStepResult(Struct):
 
 # ---- The tables --------------------------------------------------------------------------------------------
 
-ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, Part)
+ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, DeviceFault,
+         Part)
 
 STRUCTS = (Vec3, Position, Quaternion, Pose, Twist, Wrench, ContextDef, MapInfo, MapSource, WorldDef,
            WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, Coefficients, SourceState, DeviceInfo,
@@ -397,6 +413,10 @@ FUNCTIONS = {
     "frm_device_open": (frm_status, (frm_context, POINTER(DeviceDriver), c_void_p, c_uint32, _handle)),
     "frm_device_open_null": (frm_status, (frm_context, _handle)),
     "frm_device_open_replay": (frm_status, (frm_context, c_char_p, c_uint32, _handle)),
+    "frm_device_enumerate_spidar_g": (frm_status, (frm_context, c_char_p, POINTER(DeviceInfo), c_uint32,
+                                                    _u32)),
+    "frm_device_open_spidar_g": (frm_status, (frm_context, c_char_p, c_int32, _handle)),
+    "frm_device_open_simulated": (frm_status, (frm_context, c_char_p, _handle)),
     "frm_device_close": (frm_status, (frm_device,)),
     "frm_device_get_info": (frm_status, (frm_device, POINTER(DeviceInfo))),
     "frm_device_calibrate": (frm_status, (frm_device,)),

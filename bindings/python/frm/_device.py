@@ -46,6 +46,32 @@ class Device(Object):
         handle = context._made(context._lib.frm_device_open_replay, context.handle, utf8(path), index)
         return wrap(cls, context, handle)
 
+    @classmethod
+    def enumerate_spidar_g(cls, context: Context, configuration=None) -> list[DeviceInfo]:
+        """The SPIDAR-G that answer; serial is the rotary switch."""
+        count = c_uint32()
+        function = context._lib.frm_device_enumerate_spidar_g
+        path = None if configuration is None else utf8(configuration)
+        # The switch has sixteen positions, and every device is asked anew in each call.
+        infos = (DeviceInfo * 16)()
+        for info in infos:
+            info.struct_size = sizeof(DeviceInfo)
+        context._check(function(context.handle, path, infos, len(infos), byref(count)))
+        return list(infos[:min(count.value, len(infos))])
+
+    @classmethod
+    def open_spidar_g(cls, context: Context, configuration=None, rotary: int = -1) -> "Device":
+        """A SPIDAR-G over USB or HID, as its configuration says (None: the built-in one). rotary -1: any."""
+        path = None if configuration is None else utf8(configuration)
+        handle = context._made(context._lib.frm_device_open_spidar_g, context.handle, path, rotary)
+        return wrap(cls, context, handle)
+
+    @classmethod
+    def open_simulated(cls, context: Context, configuration=None) -> "Device":
+        """A simulated SPIDAR-G with a hand that holds it."""
+        path = None if configuration is None else utf8(configuration)
+        return wrap(cls, context, context._made(context._lib.frm_device_open_simulated, context.handle, path))
+
     def close(self) -> None:
         """Stops the device and closes it. Calling it again does nothing."""
         handle = self.handle

@@ -279,6 +279,54 @@ static void own_driver(frm_device stale) {
     CHECK(log.closed == 1 && log.stopped == stopped + 3); /* stops before it closes */
 }
 
+static frm_device simulated_device;
+static frm_status fill_simulated_state(void *state) {
+    return frm_device_exchange(simulated_device, NULL, (frm_device_state *)state);
+}
+
+/* A simulated SPIDAR-G is always there; a real one hardly ever, but its arguments are looked at first. */
+static void spidar_g(void) {
+    frm_device device = 42;
+    frm_device_info list[1], info = {sizeof info};
+    frm_device_state state = {sizeof state};
+    frm_device_command command = {sizeof command};
+    uint32_t count = 42, i;
+    frm_status status;
+    memset(list, 0, sizeof list);
+    list[0].struct_size = sizeof list[0];
+    REFUSED(FRM_ERROR_ARGUMENT, "device", frm_device_open_simulated(f.context, NULL, NULL));
+    REFUSED(FRM_ERROR_FILE, "/nonexistent.json", frm_device_open_simulated(f.context, "/nonexistent.json", &device));
+    REFUSED_HANDLES(f.stale_context, f.world, frm_device_open_simulated(h, NULL, &device));
+    REFUSED(FRM_ERROR_ARGUMENT, "device", frm_device_open_spidar_g(f.context, NULL, -1, NULL));
+    REFUSED(FRM_ERROR_ARGUMENT, "rotary", frm_device_open_spidar_g(f.context, NULL, 16, &device));
+    REFUSED(FRM_ERROR_ARGUMENT, "rotary", frm_device_open_spidar_g(f.context, NULL, -2, &device));
+    REFUSED(FRM_ERROR_FILE, "/nonexistent.json", frm_device_open_spidar_g(f.context, "/nonexistent.json", -1, &device));
+    REFUSED_HANDLES(f.stale_context, f.body, frm_device_open_spidar_g(h, NULL, -1, &device));
+    REFUSED(FRM_ERROR_ARGUMENT, "count", frm_device_enumerate_spidar_g(f.context, NULL, list, 1, NULL));
+    REFUSED(FRM_ERROR_FILE, "/nonexistent.json",
+            frm_device_enumerate_spidar_g(f.context, "/nonexistent.json", list, 1, &count));
+    REFUSED_HANDLES(f.stale_context, f.map, frm_device_enumerate_spidar_g(h, NULL, list, 1, &count));
+    CHECK(device == 42 && count == 42);
+    /* None is plugged in where tests run, or libusb is missing or may not look. */
+    status = frm_device_enumerate_spidar_g(f.context, NULL, list, 1, &count);
+    CHECK(status == FRM_OK || status == FRM_ERROR_UNSUPPORTED || status == FRM_ERROR_DEVICE);
+
+    OK(frm_device_open_simulated(f.context, NULL, &device));
+    OK(frm_device_get_info(device, &info));
+    CHECK(info.max_force > 20.0f && info.max_torque > 0.4f && info.period_ns == 1000000);
+    OK(frm_device_exchange(device, NULL, &state));
+    CHECK(state.status == FRM_DEVICE_UNCALIBRATED && state.faults == FRM_DEVICE_FAULT_UNCALIBRATED);
+    OK(frm_device_calibrate(device));
+    command.wrench.force.y = 2.0f;
+    for (i = 0; i < 700; ++i) OK(frm_device_exchange(device, &command, &state));
+    CHECK(state.status == FRM_DEVICE_READY && state.faults == 0);
+    CHECK(state.achieved.force.y > 1.9f && state.achieved.force.y < 2.1f && state.pose.position.y > 0.001);
+    simulated_device = device;
+    check_filled("frm_device_state", sizeof(frm_device_state), fill_simulated_state);
+    OK(frm_device_stop(device));
+    OK(frm_device_close(device));
+}
+
 /* A context that goes takes its devices with it. */
 static void closed_with_the_context(void) {
     driver_log log;
@@ -304,5 +352,6 @@ void call_device(void) {
         OK(frm_device_close(device));
     }
     own_driver(stale);
+    spidar_g();
     closed_with_the_context();
 }

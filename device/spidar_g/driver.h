@@ -1,0 +1,25 @@
+// SPIDAR-G behind the driver table of frm.h.
+#pragma once
+
+#include <memory>
+
+#include "core/api/axes.h"
+#include "device/spidar_g/spidar_g.h"
+
+namespace frm::spidar_g {
+
+/// What `user` points to while a device is opened; the instance keeps nothing of it.
+struct Source {
+    const char* configuration;  ///< a path, or null
+    std::int32_t rotary;        ///< -1: any
+    std::uint32_t axes;
+    bool simulated;
+};
+
+const frm_device_driver& driver();
+
+/// The raw reply of the last exchange of an instance of driver(): at most `capacity` bytes of it; returns how many
+/// there are. Counters, A/D and switches as the amplifier's format has them.
+std::size_t last_reply(void* instance, std::uint8_t* data, std::size_t capacity);
+
+}  // namespace frm::spidar_g
