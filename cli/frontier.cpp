@@ -64,7 +64,7 @@ void play_knob(const FrontierScene& scene, const Knob& knob, const Play* finest,
         FrontierRow row = row_of(knob, knob.choices[k], play);
         set_ratio(row, play.repeat_us, plays[0].repeat_us, scene.standard.dt / row.dt);
         if (play.waves) row.exact = Errors{{"height", *play.waves}};
-        if (!play.readings.empty() && knob.name != "preset")
+        if (!play.readings.empty() && knob.by_itself)
             row.knob_finest = errors_of(play.readings, plays[place.back()].readings);
         if (finest) row.finest = errors_of(play.readings, finest->readings);
         table.rows.push_back(std::move(row));
@@ -197,12 +197,12 @@ void add_frontier(CLI::App& bench) {
         "frontier",
         "Run time against error: every setting that trades one for the other, in several scenes, against the\n"
         "finest setting and, where there is one, the exact answer; peers beside it.");
-    command->footer(
-        "docs/performance.md has what it found and says how to read it; scripts/performance writes that page.");
+    command->footer("docs/performance.md has what\nit found and how to read it.");
     command->add_option("--scene", o.scenes, "only this one; may be repeated (default: all; maps with --map)")
         ->expected(1)
         ->take_all()
-        ->check(one_of(scene_names()));
+        ->check(one_of(scene_names()))
+        ->type_name("NAME");
     command
         ->add_option("--map", o.maps,
                      "a map of the body of the scene maps; repeat it from coarse to fine: the last is\n"

@@ -35,11 +35,12 @@ ForceError error_of(const Readings& readings, const Readings& reference) {
 }
 
 std::vector<bool> frontier_of(const std::vector<double>& time, const std::vector<double>& error) {
+    constexpr double even = 1.03;
     std::vector<bool> out(time.size(), true);
     for (std::size_t i = 0; i < time.size(); ++i)
         for (std::size_t k = 0; k < time.size(); ++k) {
-            const bool no_worse = time[k] <= time[i] && error[k] <= error[i];
-            if (no_worse && (time[k] < time[i] || error[k] < error[i])) out[i] = false;
+            const bool no_worse = time[k] <= even * time[i] && error[k] <= even * error[i];
+            if (no_worse && (even * time[k] < time[i] || even * error[k] < error[i])) out[i] = false;
         }
     return out;
 }

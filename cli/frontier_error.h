@@ -35,7 +35,8 @@ Peak peak_of(const Readings& readings);
 /// Both must have the same times and bodies.
 ForceError error_of(const Readings& readings, const Readings& reference);
 
-/// Of points (time, error): those that no other beats in one without being worse in the other.
+/// Of points (time, error): those that no other beats in one without being worse in the other. What is within 3 % is even,
+/// so that of settings which cost the same chance does not choose.
 std::vector<bool> frontier_of(const std::vector<double>& time, const std::vector<double>& error);
 
 /// The middle of the sorted values; quartiles with share 0.25 and 0.75.

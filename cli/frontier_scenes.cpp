@@ -164,9 +164,47 @@ struct Base {
              [](Setup& s, double v) { s.world.time_budget = static_cast<float>(v); });
     }
 
+    /// All of it from coarse to fine: what a frontier can be that no knob reaches by itself.
+    void together_knob(bool finer_cells = true) {
+        struct Level {
+            const char* label;
+            std::uint32_t triangles, sources, frequency;
+            double cells;
+            std::uint32_t order;
+            double dt;
+        };
+        const Level levels[] = {
+            {"half a draft, cells x 4", shape.triangles / 4, shape.draft / 2, 3, 4, 2, 0.002},
+            {"half a draft, cells x 2", shape.triangles / 4, shape.draft / 2, 3, 2, 2, 0.002},
+            {"draft, cells x 2", shape.triangles, shape.draft, 6, 2, 2, 0.002},
+            {"draft, cells x 2, order 4", shape.triangles, shape.draft, 6, 2, 4, 0.002},
+            {"draft, cells x 2, 5 ms", shape.triangles, shape.draft, 6, 2, 2, 0.005},
+            {"standard, cells x 4/3, order 4", shape.triangles, shape.sources, 8, 4.0 / 3, 4, 0.002},
+            {"standard", shape.triangles, shape.sources, 8, 1, 2, 0.002},
+            {"standard, order 4", shape.triangles, shape.sources, 8, 1, 4, 0.002},
+            {"high", shape.triangles, shape.high, 10, 1, 2, 0.002},
+            {"high, order 4", shape.triangles, shape.high, 10, 1, 4, 0.002},
+            {"twice high, order 4, 1 ms", 2 * shape.triangles, 2 * shape.high, 16, 1, 4, 0.001},
+            {"high, cells x 1/2", shape.triangles, shape.high, 10, 0.5, 2, 0.002},
+            {"high, cells x 1/2, order 4", shape.triangles, shape.high, 10, 0.5, 4, 0.002},
+            {"twice high, cells x 1/2, order 4, 1 ms", 2 * shape.triangles, 2 * shape.high, 16, 0.5, 4, 0.001},
+        };
+        Knob knob{"together", "", {}, false};
+        for (const Level& level : levels) {
+            if (level.cells < 1 && !finer_cells) continue;
+            Choice choice{level.label, 0, scene.standard, level.label == std::string("standard")};
+            if (!choice.standard)
+                choice.setup.map = map(level.triangles, level.sources, level.frequency, LawMap().rounding);
+            if (choice.setup.water) apply_preset({"", "", level.cells, level.order}, *choice.setup.water);
+            choice.setup.dt = level.dt;
+            knob.choices.push_back(std::move(choice));
+        }
+        scene.knobs.push_back(std::move(knob));
+    }
+
     /// The named presets, each with a map of the quality that goes with it.
     void preset_knob() {
-        Knob knob{"preset", "", {}};
+        Knob knob{"preset", "", {}, false};
         for (const Preset& preset : kPresets) {
             Choice choice{preset.name, 0, scene.standard, preset.name == std::string("default")};
             if (!choice.standard) {
@@ -237,6 +275,7 @@ FrontierScene stroke(bool quick) {
         base.water_knobs({0.1, 0.05, 0.035714285714285712, 0.025, 0.0125, 0.00625}, metres);
     base.tick_knob({10, 5, 2, 1, 0.5});
     base.skip_knob(water_rules);
+    base.together_knob();
     base.preset_knob();
     s.finest.push_back(finest_of(base, quick ? 0.0125 : 0.00625, metres));
     s.reference =
@@ -271,20 +310,29 @@ FrontierScene boat(bool quick) {
         s.play.seconds));
     s.play.height = [](double x, double y) { return 0.02 * std::sin(2 * pi * (0.8 * x + 0.6 * y) / 1.2); };
     s.standard.map = base.map(base.shape.triangles, base.shape.sources, 8, LawMap().rounding);
-    s.standard.water = water_of(6, 0.025, 0.5);
-    if (quick) s.standard.water->nx = s.standard.water->ny = 96;
+    s.standard.water = water_of(6, 0.05, 0.5);
+    if (quick) s.standard.water->nx = s.standard.water->ny = 48;
     const double metres = quick ? 2.4 : 6;
-    base.map_knobs({32, 72, 200, 512, 1152, 4608, 8192}, {8, 14, 28, 56, 80, 160, 400}, false);
-    if (quick)
-        base.water_knobs({0.1, 0.025, 0.0125}, metres);
-    else
-        base.water_knobs({0.1, 0.05, 0.0375, 0.025, 0.0125, 0.0075}, metres);
+    base.water_knobs({0.2, 0.15, 0.1, 0.075, 0.05}, metres);
+    // What the body displaces at a depth reaches the surface 5.6 cells wide at most (docs/model.md, section 6): of smaller
+    // cells than about a quarter of the draught not all does. Hence the finest in this scene are the default's.
+    Knob too_fine{"cell, too fine", "m", {}};
+    for (const double cell : {0.0125, 0.025, 0.0375, 0.05}) {
+        if (quick && cell < 0.03) continue;
+        too_fine.choices.push_back({text_of(cell, "m"), cell, s.standard, cell == 0.05});
+        frm_water_def& water = *too_fine.choices.back().setup.water;
+        water.cell = static_cast<float>(cell);
+        water.nx = water.ny = static_cast<std::uint32_t>(std::lround(metres / cell));
+    }
+    s.knobs.push_back(std::move(too_fine));
+    base.map_knobs({128, 288, 512, 1152, 4608, 8192}, {8, 14, 28, 56, 80, 160, 400}, false);
     base.tick_knob({10, 5, 2, 1, 0.5});
     base.skip_knob(water_rules);
+    base.together_knob(false);
     base.preset_knob();
-    s.finest.push_back(finest_of(base, quick ? 0.0125 : 0.0075, metres));
+    s.finest.push_back(finest_of(base, 0.05, metres));
     s.reference =
-        "8,192 triangles, 400 sources, 1,026 directions, precision 0.005 %, cells of 7.5 mm at fourth order, "
+        "8,192 triangles, 400 sources, 1,026 directions, precision 0.005 %, cells of 50 mm at fourth order, "
         "ticks of 0.5 ms, nothing skipped";
     if (quick) s.reference = "the finest of --quick";
     return s;
@@ -308,8 +356,9 @@ FrontierScene tow(bool quick) {
     s.standard.map = base.map(base.shape.triangles, base.shape.sources, 8, LawMap().rounding);
     base.map_knobs({50, 500, 8000}, {6, 9, 14, 20, 28, 56, 80, 160, 400}, true);
     base.tick_knob({10, 5, 2, 1, 0.5});
-    base.budget_knobs({10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05, 0.02, 0}, {0.05, 0.1, 0.2, 0.4, 0});
+    base.budget_knobs({200, 100, 50, 20, 10, 5, 2, 1, 0}, {0.05, 0.1, 0.2, 0.4, 0});
     base.skip_knob({{"FRICTION", FRM_SKIP_FRICTION}, {"STEADY", FRM_SKIP_STEADY}, {"WET_BODIES", FRM_SKIP_WET_BODIES}});
+    base.together_knob();
     base.preset_knob();
     s.finest.push_back(finest_of(base, 0, 0));
     s.reference = "8,000 triangles, 400 sources, 1,026 directions, precision 0.005 %, ticks of 0.5 ms, nothing skipped";
@@ -335,8 +384,7 @@ FrontierScene crowd(bool quick) {
     };
     s.standard.map = base.map(base.shape.triangles, base.shape.sources, 8, LawMap().rounding);
     const double all = s.play.bodies;
-    base.budget_knobs({10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05, 0.02, 0},
-                      {0.05 * all, 0.1 * all, 0.15 * all, 0.2 * all, 0.4 * all, 0});
+    base.budget_knobs({200, 100, 50, 20, 10, 5, 2, 1, 0}, {0.05 * all, 0.1 * all, 0.15 * all, 0.2 * all, 0.4 * all, 0});
     base.skip_knob({{"FRICTION", FRM_SKIP_FRICTION}, {"STEADY", FRM_SKIP_STEADY}, {"WET_BODIES", FRM_SKIP_WET_BODIES}});
     s.finest.push_back(finest_of(base, 0, 0));
     s.finest.back().dt = s.standard.dt;
@@ -372,18 +420,12 @@ FrontierScene waves(bool quick) {
     s.standard.water->border = FRM_BORDER_REFLECTING;
     sized(s.standard, 0.025);
     for (const std::uint32_t order : {2u, 4u})
-        for (const bool wait : {true, false}) {
-            // One knob for each way to step: cells.
-            const std::string name =
-                std::string("cell, order ") + (order == 2 ? "2" : "4") + (wait ? "" : ", no waiting");
-            if (quick && !wait) continue;
-            base.knob(name, "m", {0.1, 0.05, 0.033333333333333333, 0.025, 0.0125, 0.00625},
-                      order == 2 && wait ? 0.025 : -1, [&](Setup& setup, double v) {
-                          sized(setup, v > 0 ? v : 0.025);
-                          setup.water->order = order;
-                          if (!wait) setup.world.skip &= ~static_cast<std::uint32_t>(FRM_SKIP_WAVE_STEPS);
-                      });
-        }
+        base.knob(order == 2 ? "cell, order 2" : "cell, order 4", "m",
+                  {0.1, 0.05, 0.033333333333333333, 0.025, 0.0125, 0.00625}, order == 2 ? 0.025 : -1,
+                  [&](Setup& setup, double v) {
+                      sized(setup, v);
+                      setup.water->order = order;
+                  });
     base.tick_knob({10, 5, 2, 1, 0.5, 0.2});
     return s;
 }

@@ -20,6 +20,7 @@ struct Knob {
     std::string name;
     std::string unit;
     std::vector<Choice> choices;  ///< the finest last: what the others are compared with
+    bool by_itself = true;        ///< it is one setting of the library, not several together
 };
 
 struct FrontierScene {

@@ -5,8 +5,7 @@
 
 namespace frm::cli {
 
-const std::vector<Preset> kPresets{
-    {"fast", "draft", 2, 2}, {"default", "standard", 1, 0}, {"accurate", "high", 0.5, 4}};
+const std::vector<Preset> kPresets{{"fast", "draft", 2, 2}, {"default", "standard", 1, 0}, {"accurate", "high", 1, 4}};
 
 const Preset* find_preset(const std::string& name) {
     for (const Preset& preset : kPresets)

@@ -283,9 +283,10 @@ void add_run(CLI::App& app) {
         ->type_name("NAME=FILE");
     command
         ->add_option("--preset", o.preset,
-                     "fast: twice the cells' size; accurate: half, and fourth order (docs/performance.md).\n"
-                     "Goes before the scene's own")
-        ->check(one_of({"fast", "default", "accurate"}));
+                     "fast: cells of twice the size; accurate: fourth order (docs/performance.md). Goes before\n"
+                     "the scene's own")
+        ->check(one_of({"fast", "default", "accurate"}))
+        ->type_name("fast|default|accurate");
     command->add_option("--record", o.record, "write a recording that frm replay checks bit for bit")
         ->check(not_empty())
         ->type_name("FILE");

@@ -20,8 +20,8 @@ CAPTIONS = {
     "buoyancy": "Left: against the closed form for an ellipsoid cut by a plane. Right: against 32,768 triangles in the same waves, since "
                 "nothing exact is known there. Times are of buoyancy alone. *Points counted* is the paper's way and that of many games: "
                 "each of N points that is under water lifts by its share of the volume; *smoothed*, by the part of its cell that is.",
-    "maps": "The plate of 8 x 1 x 30 cm from bakes at a draft's resolution with 6 to 258 directions (before symmetry), against that of "
-            "258. MuJoCo's box is an ellipsoid of the same half axes to its fluid model, with its usual coefficients. It is compared with a "
+    "maps": "The plate of 8 x 1 x 30 cm from bakes at a draft's resolution with 6 to 102 directions (before symmetry), against that of "
+            "102. MuJoCo's box is an ellipsoid of the same half axes to its fluid model, with its usual coefficients. It is compared with a "
             "baked map, not with a measurement: how far the maps are off direct runs is in [validation-map.md](validation-map.md).",
 }
 
@@ -191,8 +191,7 @@ def plot(scenes, titles):
             axes.set_xlabel("time, us, for 2 ms of the scene (a tick at 500 Hz)" if len(scenes) == 1 and scene.table["scene"] != "buoyancy"
                             else "time of one evaluation, us")
         handles, labels = all_axes[0][0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside right upper" if len(scenes) == 1 else "outside lower center",
-                      ncols=1 if len(scenes) == 1 else 5, fontsize=8)
+        all_axes[0][-1].legend(handles, labels, loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0, fontsize=8)
         content = io.BytesIO()
         if form == "svg":
             figure.savefig(content, format="svg", metadata={"Date": None})

@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FRM_PROGRAM", str(ROOT / "build" / "release" / "frm"))
-sys.path.insert(0, str(ROOT / "scripts" / "lib"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "lib")]
 
 
 @pytest.fixture(scope="session")
@@ -53,3 +53,7 @@ def knob(table):
         assert rows, f"{scene} has no knob {name}"
         return rows
     return of
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "full: takes longer (ctest -L full)")

@@ -60,7 +60,7 @@ def test_frontier_is_what_nothing_beats(table, scene):
             kind = "exact" if "exact" in row["error"] else "finest"
             points.append((row["us_at_500_hz"], row["error"][kind][of]["rms"], row["frontier"]))
     for time, error, best in points:
-        beaten = any(t <= time and e <= error and (t < time or e < error) for t, e, _ in points)
+        beaten = any(t <= 1.03 * time and e <= 1.03 * error and (1.03 * t < time or 1.03 * e < error) for t, e, _ in points)
         assert best == (not beaten)
     assert any(best for *_, best in points)
 
@@ -74,11 +74,10 @@ def test_finer_maps_are_nearer_to_the_finest(knob, scene, name):
     assert off[-2] < 0.1  # the default
 
 
-@pytest.mark.parametrize("scene", ("stroke", "boat"))
-@pytest.mark.parametrize("name", ("triangles", "cell", "tick"))
+@pytest.mark.parametrize("scene, name", (("stroke", "cell"), ("stroke", "tick"), ("boat", "triangles"), ("boat", "tick")))
 def test_finer_steps_are_nearer_to_the_finest(knob, scene, name):
     off = errors(knob(scene, name), "knob_finest")
-    assert off[-1] == 0 and off[-2] < off[0] and off[-2] < 0.1, off
+    assert len(off) > 2 and off[-1] == 0 and all(finer < coarser for coarser, finer in zip(off, off[1:])) and off[-2] < 0.1, off
 
 
 def test_waves_meet_the_exact_answer(knob):
