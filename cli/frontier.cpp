@@ -193,12 +193,15 @@ void run(const Options& o) {
 void add_frontier(CLI::App& bench) {
     auto options = std::make_shared<Options>();
     Options& o = *options;
-    CLI::App* command = bench.add_subcommand(
-        "frontier",
-        "Run time against error: every setting that trades one for the other, in several scenes, against the\n"
-        "finest setting and, where there is one, the exact answer; peers beside it.");
-    command->footer("docs/performance.md has what\nit found and how to read it.");
-    command->add_option("--scene", o.scenes, "only this one; may be repeated (default: all; maps with --map)")
+    CLI::App* command = bench.add_subcommand("frontier", "Run time against error of every setting, in several scenes.");
+    command->footer(
+        "Errors are against the finest setting and, where there is one, the exact answer; MuJoCo's\n"
+        "ellipsoid model and point-sampled buoyancy are beside it. docs/performance.md has what it\n"
+        "found and says how to read it.");
+    command
+        ->add_option("--scene", o.scenes,
+                     "only this one: stroke, boat, tow, crowd, waves, buoyancy, buoyancy-waves or maps; may be\n"
+                     "repeated (default: all; maps with --map)")
         ->expected(1)
         ->take_all()
         ->check(one_of(scene_names()))

@@ -374,7 +374,7 @@ FrontierScene crowd(bool quick) {
     s.what = quick ? "60 such plates, each at another point of that motion"
                    : "1,000 such plates, each at another point of that motion";
     s.play.name = "crowd";
-    s.play.seconds = quick ? 0.4 : 0.8;
+    s.play.seconds = 0.4;
     s.play.bodies = quick ? 60 : 1000;
     const auto motion = std::make_shared<const Motion>(motion_of(tumbling, 7));
     s.play.motion = [motion](double time, std::uint32_t body, frm_pose& pose, frm_twist& twist) {

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import datetime
 import io
+import math
 
 from flow_page import Table
 
@@ -13,13 +14,25 @@ PLAYED = ("stroke", "boat", "tow", "crowd")
 # A knob has its colour in every plot.
 COLOURS = {"triangles": "C0", "sources": "C1", "directions": "C2", "map precision": "C3", "cell": "C4", "order": "C5", "tick": "C6",
            "skip": "C7", "error budget": "C8", "time budget": "C9", "preset": "black", "points counted": "C3", "points smoothed": "C1",
-           "map": "C2", "MuJoCo": "C3"}
+           "map": "C2", "MuJoCo": "C3", "cell, order 2": "C4", "cell, order 4": "C5", "cell, too fine": "C3", "together": "0.4"}
+SCATTERED = ("together", "skip")  # settings without an order: no line joins them
+LABEL_AT = {"accurate": (8, -14)}
 CAPTIONS = {
     "waves": "Waves against d'Alembert's exact solution. The exact answer is that of the equations, not of the sea: real waves have "
              "dispersion ([model.md](model.md#limits)).",
     "buoyancy": "Left: against the closed form for an ellipsoid cut by a plane. Right: against 32,768 triangles in the same waves, since "
                 "nothing exact is known there. Times are of buoyancy alone. *Points counted* is the paper's way and that of many games: "
-                "each of N points that is under water lifts by its share of the volume; *smoothed*, by the part of its cell that is.",
+                "each of N points that is under water lifts by its share of the volume; *smoothed*, by the part of its cell that is. Points lift "
+                "straight up: in waves they lack the sideways force of a sloping surface, so that more of them do not help. The clip's error is the "
+                "shape's (chords of an ellipsoid); it also gives what is wet of each region, which resistance needs and points do not know.",
+    "tow": "Directions and precision of the map cost no time, only its size. What a tick costs here is its sources; the error budget gives a "
+           "bound that is kept, so that what it buys is more than it must, and a budget below the bound of any group costs a little and buys "
+           "nothing.",
+    "crowd": "A time budget is one for all bodies together; an error budget is each body's.",
+    "stroke": "No knob by itself gets far: triangles, sources, cells and ticks each have a like part in the error.",
+    "boat": "Cells below a quarter of the draught (*too fine*) make the waves of the hull too small, at any price: what the body displaces at a "
+            "depth is spread over 5.6 cells at most, and the rest of it is left out ([model.md](model.md#limits)). Larger cells agree with "
+            "each other. Most of the time goes into the displaced volume.",
     "maps": "The plate of 8 x 1 x 30 cm from bakes at a draft's resolution with 6 to 102 directions (before symmetry), against that of "
             "102. MuJoCo's box is an ellipsoid of the same half axes to its fluid model, with its usual coefficients. It is compared with a "
             "baked map, not with a measurement: how far the maps are off direct runs is in [validation-map.md](validation-map.md).",
@@ -93,20 +106,21 @@ def steps(scene):
     """(knob, default, coarser, finer) for knobs whose settings have an order."""
     for knob, rows in scene.knobs().items():
         at = next((i for i, row in enumerate(rows) if row["default"]), None)
-        if at is None or knob in ("skip", "error budget", "time budget") or rows[0]["peer"]:
+        if at is None or knob in ("skip", "error budget", "time budget", "together", "cell, too fine", "preset", "tick") or rows[0]["peer"]:
             continue
         yield knob, rows[at], rows[at - 1] if at > 0 else None, rows[at + 1] if at + 1 < len(rows) else None
 
 
 def verdict(time_coarser, error_coarser, time_finer, error_finer):
-    """Where a step of the knob changes neither by a twentieth, it does not matter."""
+    """Where a step of the knob changes neither by a twentieth, it does not matter; where time by error falls by less than a tenth,
+    it does not pay."""
     def flat(*factors):
         return all(f is None or 0.95 <= f <= 1.05 for f in factors)
     if flat(time_coarser, error_coarser, time_finer, error_finer):
         return "no matter"
-    if time_coarser is not None and time_coarser < 0.95 and error_coarser * time_coarser < 1:
+    if time_coarser is not None and time_coarser < 0.95 and error_coarser * time_coarser < 0.9:
         return "coarser pays"
-    if error_finer is not None and error_finer < 0.95 and error_finer * time_finer < 1:
+    if error_finer is not None and error_finer < 0.95 and error_finer * time_finer < 0.9:
         return "finer pays"
     return "yes"
 
@@ -151,13 +165,14 @@ def draw_scene(axes, scene, title=None):
             continue
         colour = COLOURS.get(knob)
         if knob == "preset":
-            axes.plot(*zip(*points), "*", color="black", markersize=12, zorder=5, label="presets")
+            axes.plot(*zip(*points), "*", color="black", markersize=12, zorder=5, linestyle="", label="presets")
             for (x, y), row in zip(points, rows):
-                axes.annotate(row["label"], (x, y), textcoords="offset points", xytext=(8, 8), weight="bold", zorder=6)
+                axes.annotate(row["label"], (x, y), textcoords="offset points", xytext=LABEL_AT.get(row["label"], (8, 8)), weight="bold",
+                              zorder=6)
         elif rows[0]["peer"]:
             axes.plot(*zip(*points), "x--" if len(points) > 1 else "X", color=colour, markersize=7 if len(points) > 1 else 10, label=knob)
         else:
-            axes.plot(*zip(*points), ":" if knob == "skip" else "-", marker="o", markersize=4, linewidth=1, color=colour, label=knob)
+            axes.plot(*zip(*points), "" if knob in SCATTERED else "-", marker="D" if knob in SCATTERED else "o", markersize=4, linewidth=1, color=colour, label=knob)
     best = sorted((row["us_at_500_hz"], 100 * scene.error(row)) for row in scene.rows if row["frontier"] and scene.error(row))
     if len(best) > 1:
         axes.plot(*zip(*best), drawstyle="steps-post", color="0.75", linewidth=5, zorder=0, label="nothing beats these")
@@ -180,14 +195,17 @@ def plot(scenes, titles):
         matplotlib.use("Agg")
         matplotlib.rcParams.update({"svg.hashsalt": "frm", "svg.fonttype": "none", "font.size": 9})
         from matplotlib import pyplot
-        from matplotlib.ticker import FuncFormatter
+        from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
         figure, all_axes = pyplot.subplots(1, len(scenes), figsize=(8.5, 4.6), layout="constrained", squeeze=False)
         for axes, scene, title in zip(all_axes[0], scenes, titles):
             draw_scene(axes, scene, title)
             plain = FuncFormatter(lambda v, _: f"{v:g}")
-            axes.xaxis.set_major_formatter(plain)
-            axes.yaxis.set_major_formatter(plain)
+            for axis in (axes.xaxis, axes.yaxis):
+                low, high = axis.get_view_interval()
+                axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 300 * low else (1,)))
+                axis.set_major_formatter(plain)
+                axis.set_minor_formatter(NullFormatter())
             axes.set_xlabel("time, us, for 2 ms of the scene (a tick at 500 Hz)" if len(scenes) == 1 and scene.table["scene"] != "buoyancy"
                             else "time of one evaluation, us")
         handles, labels = all_axes[0][0].get_legend_handles_labels()
@@ -236,22 +254,50 @@ def introduction(records, quick):
             "Nothing here is compared with real water."]
 
 
+def geometric(values):
+    return math.exp(sum(map(math.log, values)) / len(values))
+
+
+def preset_factors(scenes):
+    """{preset: (time, force, torque)} over the default's, means over the scenes that have presets."""
+    out = {}
+    for name in ("fast", "accurate"):
+        pairs = []
+        for scene in scenes.values():
+            rows = {row["label"]: row for row in scene.knobs().get("preset", [])}
+            if name in rows and "default" in rows:
+                pairs.append((rows[name], rows["default"]))
+        if pairs:
+            out[name] = (geometric([row["ratio"] for row, _ in pairs]),
+                         *(geometric([error(row, of) / error(default, of) for row, default in pairs]) for of in ("force", "torque")))
+    return out
+
+
 def preset_section(scenes):
     lines, counts = knee_lines({name: scenes[name] for name in (*PLAYED, "waves") if name in scenes})
-    summed = ", ".join(f"{count} {name}" for name, count in sorted(counts.items(), key=lambda item: -item[1]))
+    summed = ", ".join(f"{count} {name}" for name, count in sorted(counts.items(), key=lambda item: (-item[1], item[0])))
+    factors = [f"**{name}** takes {time:.2f} of the default's time and has {force:.2f} of its force error and {torque:.2f} of its torque error "
+               f"(time by error: {time * force:.2f} and {time * torque:.2f})" for name, (time, force, torque) in preset_factors(scenes).items()]
+    knee = [f"Over these scenes (geometric means) {'; '.join(factors)}. A product below 1 says that the step away from the default buys more than "
+            "it costs, one above that it does not. Where `fast` is below 1 it is a good choice for who is short of time: what keeps the default "
+            "finer is the torque, the waves (below), and that its errors stay a small part of a baked map's own "
+            "([validation-map.md](validation-map.md))."] if factors else []
     return ["## The presets", "",
             "A preset is a name for three settings; everything else stays at its default. `\"preset\": \"fast\"` in a scene or "
             "`frm run --preset fast` takes the cells and the order; the map is baked beforehand.", "",
-            "| preset | bake | cells | order | skips, tick |", "| --- | --- | --- | --- | --- |",
-            "| fast | `--quality draft` | twice the scene's | 2 | as by default |",
-            "| **default** | `--quality standard` | the scene's | the scene's (2) | all rules, 2 ms |",
-            "| accurate | `--quality high` | half the scene's | 4 | as by default |", "",
-            *summary_lines(scenes), "",
+            "| preset | bake | cells | order |", "| --- | --- | --- | --- |",
+            "| fast | `--quality draft` | twice the scene's | 2 |",
+            "| **default** | `--quality standard` | the scene's | the scene's (2) |",
+            "| accurate | `--quality high` | the scene's | 4 |", "",
+            *summary_lines(scenes), "", *knee, "",
             "### The default, knob by knob", "",
             "A default is at the knee where the step coarser loses more in error than it gains in time, and the step finer costs more in time "
             "than it gains in error. Factors are against the default; error is that of the whole scene, so that a knob is only worth refining "
-            "where it is the one that limits. *No matter*: neither changes by a twentieth.", "",
-            *lines, "", f"Of these: {summed}."]
+            "where it is the one that limits. A step *pays* where time by error falls by a tenth or more; *no matter*: neither changes by a "
+            "twentieth. How long a tick is the host says; its costs and errors are below.", "",
+            *lines, "", f"Of these: {summed}.", "",
+            "**Waves.** Second order is the default because it is cheaper and a body's force hardly shows the difference. Who looks at waves "
+            "that run for many of their lengths is better off with fourth order and cells a third larger, for the same time: see the next section."]
 
 
 def page(records, quick):
