@@ -172,7 +172,7 @@ def draw_scene(axes, scene, title=None):
         elif rows[0]["peer"]:
             axes.plot(*zip(*points), "x--" if len(points) > 1 else "X", color=colour, markersize=7 if len(points) > 1 else 10, label=knob)
         else:
-            axes.plot(*zip(*points), "" if knob in SCATTERED else "-", marker="D" if knob in SCATTERED else "o", markersize=4, linewidth=1, color=colour, label=knob)
+            axes.plot(*zip(*points), linestyle="" if knob in SCATTERED else "-", marker="D" if knob in SCATTERED else "o", markersize=4, linewidth=1, color=colour, label=knob)
     best = sorted((row["us_at_500_hz"], 100 * scene.error(row)) for row in scene.rows if row["frontier"] and scene.error(row))
     if len(best) > 1:
         axes.plot(*zip(*best), drawstyle="steps-post", color="0.75", linewidth=5, zorder=0, label="nothing beats these")
