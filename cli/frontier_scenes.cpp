@@ -376,9 +376,23 @@ FrontierScene crowd(bool quick) {
     s.play.name = "crowd";
     s.play.seconds = 0.4;
     s.play.bodies = quick ? 60 : 1000;
-    const auto motion = std::make_shared<const Motion>(motion_of(tumbling, 7));
-    s.play.motion = [motion](double time, std::uint32_t body, frm_pose& pose, frm_twist& twist) {
-        motion->at(time + 6.0 * body / 1000, pose, twist);
+    // Every body is some whole ticks behind the one before: one table has the motion of all.
+    constexpr double tick = 0.002;
+    constexpr std::uint32_t behind = 3;
+    struct Place {
+        frm_pose pose;
+        frm_twist twist;
+    };
+    const auto table = std::make_shared<std::vector<Place>>();
+    const Motion motion = motion_of(tumbling, 7);
+    for (std::uint32_t n = 0; n < behind * s.play.bodies + s.play.seconds / tick + 1; ++n) {
+        table->emplace_back();
+        motion.at(tick * n, table->back().pose, table->back().twist);
+    }
+    s.play.motion = [table](double time, std::uint32_t body, frm_pose& pose, frm_twist& twist) {
+        const Place& place = (*table)[behind * body + static_cast<std::size_t>(std::lround(time / tick))];
+        pose = place.pose;
+        twist = place.twist;
         pose.position.x += 2 * (body % 40);
         pose.position.y += 2 * (body / 40);
     };
