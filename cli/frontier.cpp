@@ -59,6 +59,11 @@ void play_knob(const FrontierScene& scene, const Knob& knob, const Play* finest,
         if (!choice.standard) setups.push_back(&choice.setup);
     }
     const std::vector<Play> plays = play_in_turns(scene.play, setups, repeats);
+    if (!finest && !plays[0].readings.empty()) {
+        const Peak peak = peak_of(plays[0].readings);
+        table.peak_force = peak.force;
+        table.peak_torque = peak.torque;
+    }
     for (std::size_t k = 0; k < knob.choices.size(); ++k) {
         const Play& play = plays[place[k]];
         FrontierRow row = row_of(knob, knob.choices[k], play);

@@ -473,7 +473,15 @@ FrontierScene make_map_scene(const std::vector<std::string>& maps) {
         knob.choices.push_back(std::move(choice));
     }
     s.standard = knob.choices.back().setup;
+    knob.choices.back().standard = true;
     s.knobs.push_back(std::move(knob));
+    // Down to the whole body as one group of sources, which is what a simple model has.
+    Knob budget{"time budget", "us", {}};
+    for (const double us : {0.05, 0.1, 0.2, 0.0}) {
+        budget.choices.push_back({text_of(us, "us"), us, s.standard, us == 0});
+        budget.choices.back().setup.world.time_budget = static_cast<float>(us);
+    }
+    s.knobs.push_back(std::move(budget));
     s.reference = maps.back();
     return s;
 }
