@@ -36,7 +36,7 @@ CAPTIONS = {
     "maps": "The plate of 8 x 1 x 30 cm from bakes at a draft's resolution with 6 to 102 directions (before symmetry), against that of "
             "102. MuJoCo's box is an ellipsoid of the same half axes to its fluid model, with its usual coefficients. It is compared with a "
             "baked map, not with a measurement: how far the maps are off direct runs is in [validation-map.md](validation-map.md). The smallest time "
-            "budget takes the whole body as one group of sources: as MuJoCo does, and in a like time.",
+            "budget takes the whole body as one, as MuJoCo does.",
 }
 
 
