@@ -76,6 +76,19 @@ void play_knob(const FrontierScene& scene, const Knob& knob, const Play* finest,
     }
 }
 
+/// Knobs are played one after the other, and the machine may be faster for one than for the next. The default is in all of
+/// them: by the ratio to it all times become those of one and the same.
+void level_times(FrontierTable& table) {
+    std::vector<double> standard;
+    for (const FrontierRow& row : table.rows)
+        if (row.standard) standard.push_back(row.us_at_500_hz);
+    const double us = quantile_of(standard, 0.5);
+    for (FrontierRow& row : table.rows) {
+        row.us_at_500_hz = row.ratio * us;
+        row.tick_us = row.us_at_500_hz * row.dt / tick_at_500_hz;
+    }
+}
+
 FrontierTable play_scene(const FrontierScene& scene, std::uint32_t repeats) {
     FrontierTable table{
         scene.play.name, scene.what, scene.reference, scene.play.exact_height ? "height" : "force", 0, 0, {}};
@@ -87,6 +100,7 @@ FrontierTable play_scene(const FrontierScene& scene, std::uint32_t repeats) {
         table.peak_torque = peak.torque;
     }
     for (const Knob& knob : scene.knobs) play_knob(scene, knob, finest.empty() ? nullptr : &finest[0], repeats, table);
+    level_times(table);
     return table;
 }
 

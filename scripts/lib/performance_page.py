@@ -244,7 +244,7 @@ def introduction(records, quick):
             "- **Time** is that of 2 ms of the scene on one core, which is a tick at 500 Hz; where the tick is shorter or longer, as many as "
             "fit. Each tick is played several times, all settings of a knob taking turns of 0.2 s of the scene, so that what else the machine does meets "
             "all of them alike; what counts is the mean over the ticks of each tick's median. *Of the default's* is the ratio in the same repeat, "
-            "median and quartiles: trust that more than the microseconds.",
+            "median and quartiles; the microseconds of a scene are that ratio times the default's.",
             "- **Error** is the rms over the motion (*worst*: the largest) of the difference of the total force or torque, as a share of the "
             "reference's peak. The reference is the exact answer in the scenes that have one, and else **the finest**: all knobs at "
             "their finest together, which each scene names. *By this knob alone* compares with the finest of the same knob and all else as by "
