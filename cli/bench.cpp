@@ -12,6 +12,7 @@
 #include "cli/bench_tick.h"
 #include "cli/bench_waves.h"
 #include "cli/command.h"
+#include "cli/frontier.h"
 
 namespace frm::cli {
 namespace {
@@ -179,7 +180,16 @@ void add_bench(CLI::App& app) {
         ->capture_default_str();
     command->add_flag("--full", options->full, "a million ticks for the 99.99th percentile");
     command->add_flag("--json", options->json, "JSON on standard output");
-    command->callback([options] { run(*options); });
+    add_frontier(*command);
+    // Before the frontier is measured: what stands left of it would be passed over.
+    command->parse_complete_callback([command] {
+        if (command->get_subcommands().empty()) return;
+        for (const CLI::Option* option : command->get_options())
+            if (option->count() > 0) throw CLI::ExtrasError({option->get_name() + ": belongs after frontier"});
+    });
+    command->callback([options, command] {
+        if (command->get_subcommands().empty()) run(*options);
+    });
 }
 
 }  // namespace frm::cli

@@ -25,11 +25,12 @@ struct FreeModel {
 /// that moves in its scene, because its force goes through a Jacobian of that width.)
 class Scene {
 public:
-    Scene(double density, double viscosity) {
+    Scene(double density, double viscosity, const Vec3d& half_sizes = {0.04, 0.005, 0.15}) {
         const std::string xml = "<mujoco><option gravity='0 0 0' density='" + std::to_string(density) +
                                 "' viscosity='" + std::to_string(viscosity) +
-                                "'/><worldbody><body><freejoint/><geom type='box' size='0.04 0.005 0.15' "
-                                "fluidshape='ellipsoid'/></body></worldbody></mujoco>";
+                                "'/><worldbody><body><freejoint/><geom type='box' size='" +
+                                std::to_string(half_sizes.x) + " " + std::to_string(half_sizes.y) + " " +
+                                std::to_string(half_sizes.z) + "' fluidshape='ellipsoid'/></body></worldbody></mujoco>";
         const auto files = std::make_unique<mjVFS>();
         mj_defaultVFS(files.get());
         mj_makeEmptyFileVFS(files.get(), "scene.xml", static_cast<int>(xml.size()));
@@ -46,6 +47,30 @@ public:
         const mjtNum v[6] = {x, y, z, spin, 0.5 * spin, 0.25 * spin};
         std::copy(v, v + 6, data_->qvel);
         mj_fwdVelocity(model_.get(), data_.get());
+    }
+
+    void move(const frm_pose& pose, const frm_twist& twist) {
+        const frm_quaternion& q = pose.rotation;
+        const mjtNum quat[4] = {static_cast<mjtNum>(q.w), static_cast<mjtNum>(q.x), static_cast<mjtNum>(q.y),
+                                static_cast<mjtNum>(q.z)};
+        std::copy(quat, quat + 4, data_->qpos + 3);
+        // A free joint turns about the body's axes, and moves along the world's.
+        mjtNum inverse[4], spin[3] = {static_cast<mjtNum>(twist.angular.x), static_cast<mjtNum>(twist.angular.y),
+                                      static_cast<mjtNum>(twist.angular.z)};
+        mju_negQuat(inverse, quat);
+        mju_rotVecQuat(data_->qvel + 3, spin, inverse);
+        data_->qvel[0] = static_cast<mjtNum>(twist.linear.x);
+        data_->qvel[1] = static_cast<mjtNum>(twist.linear.y);
+        data_->qvel[2] = static_cast<mjtNum>(twist.linear.z);
+        mj_fwdPosition(model_.get(), data_.get());
+        mj_fwdVelocity(model_.get(), data_.get());
+    }
+
+    Reading reading() const {
+        const mjtNum* f = data_->qfrc_passive;
+        mjtNum torque[3];
+        mju_rotVecQuat(torque, f + 3, data_->qpos + 3);
+        return {{f[0], f[1], f[2]}, {torque[0], torque[1], torque[2]}};
     }
 
     /// Of one call of mj_passive, ns: the least of many, in which nothing else ran.
@@ -82,12 +107,33 @@ std::optional<MujocoFluid> measure_mujoco(double seconds) {
     return out;
 }
 
+std::optional<MujocoMotion> move_mujoco(const Vec3d& half_sizes,
+                                        const std::vector<std::pair<frm_pose, frm_twist>>& motion, double density,
+                                        double viscosity, double seconds) {
+    // MuJoCo's viscosity is the dynamic one.
+    Scene water(density, density * viscosity, half_sizes), nothing(0, 0, half_sizes);
+    MujocoMotion out;
+    for (const auto& [pose, twist] : motion) {
+        water.move(pose, twist);
+        out.readings.push_back(water.reading());
+    }
+    const auto& [pose, twist] = motion[motion.size() / 2];
+    water.move(pose, twist);
+    nothing.move(pose, twist);
+    out.nanoseconds = water.passive_ns(0.5 * seconds) - nothing.passive_ns(0.5 * seconds);
+    return out;
+}
+
 }  // namespace frm::cli
 
 #else
 
 namespace frm::cli {
 std::optional<MujocoFluid> measure_mujoco(double) { return std::nullopt; }
+std::optional<MujocoMotion> move_mujoco(const Vec3d&, const std::vector<std::pair<frm_pose, frm_twist>>&, double,
+                                        double, double) {
+    return std::nullopt;
+}
 }  // namespace frm::cli
 
 #endif

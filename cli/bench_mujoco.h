@@ -3,6 +3,12 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
+
+#include "cli/frontier_error.h"
+#include "core/math/vec.h"
+#include "frm.h"
 
 namespace frm::cli {
 
@@ -15,5 +21,16 @@ struct MujocoFluid {
 
 /// None if this program was built without MuJoCo.
 std::optional<MujocoFluid> measure_mujoco(double seconds);
+
+struct MujocoMotion {
+    Readings readings;       ///< force and torque about the body's origin, world axes
+    double nanoseconds = 0;  ///< as in MujocoFluid, in the middle of the motion
+};
+
+/// What a box of these half sizes about the body's origin feels in deep water at rest that is moved so. None without
+/// MuJoCo.
+std::optional<MujocoMotion> move_mujoco(const Vec3d& half_sizes,
+                                        const std::vector<std::pair<frm_pose, frm_twist>>& motion, double density,
+                                        double viscosity, double seconds);
 
 }  // namespace frm::cli

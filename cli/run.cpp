@@ -20,7 +20,7 @@ namespace frm::cli {
 namespace {
 
 struct Options {
-    std::string scene, record, report, csv;
+    std::string scene, preset, record, report, csv;
     std::vector<std::string> maps;
     double seconds = 0;
     bool json = false;
@@ -237,7 +237,7 @@ void tick_all(Run& run, double dt, std::size_t ticks, OutputFile* csv) {
 }
 
 void run(const Options& o) {
-    Scene scene = read_scene(o.scene, o.maps);
+    Scene scene = read_scene(o.scene, o.maps, o.preset);
     if (o.seconds > 0) scene.seconds = o.seconds;
     const double ticks = std::round(scene.seconds / scene.dt);
     if (!(ticks >= 1 && ticks <= 1e9)) throw Failure(o.scene + ": seconds / dt must be 1 to 1e9 ticks");
@@ -281,6 +281,12 @@ void add_run(CLI::App& app) {
         ->expected(1)
         ->take_all()
         ->type_name("NAME=FILE");
+    command
+        ->add_option("--preset", o.preset,
+                     "fast: cells of twice the size; accurate: fourth order (docs/performance.md). Goes before\n"
+                     "the scene's own")
+        ->check(one_of({"fast", "default", "accurate"}))
+        ->type_name("fast|default|accurate");
     command->add_option("--record", o.record, "write a recording that frm replay checks bit for bit")
         ->check(not_empty())
         ->type_name("FILE");

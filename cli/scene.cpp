@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/json_reader.h"
+#include "cli/presets.h"
 
 namespace frm::cli {
 namespace {
@@ -75,6 +76,14 @@ SceneBody read_body(const JsonReader& j) {
     return body;
 }
 
+/// The file's, unless another is asked for.
+const Preset& read_preset(const JsonReader& j, const std::string& asked) {
+    std::string name = "default";
+    j.read("preset", name);
+    if (!find_preset(name)) j.fail("preset", "\"" + name + "\" is not one of " + preset_names(", "));
+    return *find_preset(asked.empty() ? name : asked);
+}
+
 Json parse(const std::string& path) {
     std::ifstream file(path);
     if (!file || std::filesystem::is_directory(path)) throw Failure(path + ": cannot be opened");
@@ -98,10 +107,10 @@ void add_map(const std::string& text, std::map<std::string, std::string>& maps) 
 
 }  // namespace
 
-Scene read_scene(const std::string& path, const std::vector<std::string>& maps) {
+Scene read_scene(const std::string& path, const std::vector<std::string>& maps, const std::string& preset) {
     const Json root = parse(path);
     const JsonReader j(root, path);
-    j.allow_only({"title", "dt", "seconds", "world", "water", "maps", "bodies"});
+    j.allow_only({"title", "dt", "seconds", "preset", "world", "water", "maps", "bodies"});
     Scene scene;
     scene.path = path;
     scene.title = std::filesystem::path(path).stem().string();
@@ -113,6 +122,8 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& maps) 
     const Json none = Json::object();
     scene.world = read_world(j.has("world") ? j.object("world") : JsonReader(none, path + ".world"));
     if (j.has("water")) scene.water = read_water(j.object("water"));
+    const Preset wanted = read_preset(j, preset);
+    if (scene.water) apply_preset(wanted, *scene.water);
 
     for (const std::string& map : maps) add_map(map, scene.maps);
     for (const auto& [name, file] : j.texts("maps"))

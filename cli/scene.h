@@ -27,8 +27,8 @@ struct Scene {
     std::vector<SceneBody> bodies;
 };
 
-/// Reads a scene. `maps` ("name=path") come before the file's own, whose paths are relative to the file. Throws Failure
-/// naming the key that is wrong; keys that are not known are wrong.
-Scene read_scene(const std::string& path, const std::vector<std::string>& maps);
+/// Reads a scene. `maps` ("name=path") come before the file's own, whose paths are relative to the file; so does `preset`
+/// (cli/presets.h), unless it is empty. Throws Failure naming the key that is wrong; keys that are not known are wrong.
+Scene read_scene(const std::string& path, const std::vector<std::string>& maps, const std::string& preset = "");
 
 }  // namespace frm::cli

@@ -15,9 +15,9 @@ OPTIONS = {
              "--resolution", "--duration", "--confidence PERCENT", "--seconds", "--spin", "--slab", "--turn DEGREES",
              "--no-grid-error", "--memory GIB", "--report DIR", "--out", "--json"],
     "force": ["FILE", "--velocity", "--spin", "--seconds", "--json"],
-    "run": ["SCENE", "--map", "--record", "--report", "--csv", "--seconds", "--json"],
+    "run": ["SCENE", "--map", "--preset fast|default|accurate", "--record", "--report", "--csv", "--seconds", "--json"],
     "replay": ["FILE", "--json"],
-    "bench": ["--seconds", "--full", "--json"],
+    "bench": ["--seconds", "--full", "--json", "frontier"],
 }
 FLOW = ["flow", "a.glb", "--direction", "1,0,0", "--speed", "1"]
 

@@ -231,3 +231,28 @@ def test_report(good, refused, scene, tmp_path):
     assert json.loads((tmp_path / "the report" / "run.json").read_text()) == outcome.json
     (tmp_path / "file").write_text("")
     refused(1, "file", "run", scene(), "--report", tmp_path / "file")
+
+
+def test_presets_are_other_cells_for_the_same_water(good, refused, scene, tmp_path):
+    water = {"nx": 48, "ny": 40, "cell": 0.025, "border_cells": 8}
+
+    def hash_of(path, *more):
+        return good("run", path, "--json", *more).json["world_hash"]
+    plain = hash_of(scene(water=water))
+    assert hash_of(scene(preset="default", water=water)) == plain
+    fast = hash_of(scene(water={**water, "nx": 24, "ny": 20, "cell": 0.05, "border_cells": 4}))
+    accurate = hash_of(scene(water={**water, "order": 4}))
+    assert len({plain, fast, accurate}) == 3
+    assert hash_of(scene(preset="fast", water=water)) == fast and hash_of(scene(preset="accurate", water=water)) == accurate
+    # The command line goes before the file; what the file says of the order stays where the preset says nothing.
+    assert hash_of(scene(preset="fast", water=water), "--preset", "accurate") == accurate
+    assert hash_of(scene(preset="fast", water=water), "--preset", "default") == plain
+    assert hash_of(scene(preset="default", water={**water, "order": 4})) == accurate
+    # Without water there is nothing that a preset changes.
+    assert hash_of(scene(water=None, preset="fast")) == hash_of(scene(water=None))
+
+
+def test_a_preset_that_is_none(refused, scene):
+    refused(1, "scene.json.preset|quick|fast, default, accurate", "run", scene(preset="quick"))
+    refused(1, "scene.json.preset|text", "run", scene(preset=2))
+    refused(2, "--preset", "run", scene(), "--preset", "quick")
