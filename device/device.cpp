@@ -54,6 +54,7 @@ frm_device_state Device::exchange(const api::Axes& axes, const frm_device_comman
     frm_device_state state{};
     state.struct_size = sizeof state;
     state.pose.rotation.w = 1;
+    state.achieved = command.wrench;
     require_success(driver_.exchange(user_, instance_, &command, &state), "exchange");
     try {
         axes.pose_in(state.pose, "state.pose");

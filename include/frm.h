@@ -556,6 +556,18 @@ typedef enum frm_device_status {
     FRM_DEVICE_FAULT = 2         /* forces are off until the cause is gone */
 } frm_device_status;
 
+/* What is wrong with a device, a sum. A driver reports what it sees in frm_device_state.faults. */
+typedef enum frm_device_fault {
+    FRM_DEVICE_FAULT_NONE = 0,
+    FRM_DEVICE_FAULT_SHORT_PACKET = 1,   /* a packet came with fewer bytes than it must have */
+    FRM_DEVICE_FAULT_TIMEOUT = 2,        /* no answer in time */
+    FRM_DEVICE_FAULT_UNPLUGGED = 4,
+    FRM_DEVICE_FAULT_STUCK_ENCODER = 8,
+    FRM_DEVICE_FAULT_SLACK_STRING = 16,
+    FRM_DEVICE_FAULT_BROKEN_STRING = 32,
+    FRM_DEVICE_FAULT_UNCALIBRATED = 64   /* the calibration was lost */
+} frm_device_fault;
+
 typedef struct frm_device_info {
     uint32_t struct_size;
     uint32_t serial;
@@ -583,6 +595,9 @@ typedef struct frm_device_state {
     uint32_t buttons;  /* one bit each */
     uint64_t time_ns;  /* monotonic, the device's clock */
     uint64_t sequence; /* counts exchanges from 0 */
+    frm_wrench achieved; /* that the device displays now; a driver that leaves it displays what it was sent */
+    uint32_t faults;     /* frm_device_fault */
+    uint32_t reserved;
 } frm_device_state;
 
 /* A driver: any host can write one. `user` is the pointer given to frm_device_open; `instance` is what open made.

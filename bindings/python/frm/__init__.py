@@ -21,7 +21,7 @@ Calls release Python's lock. The header's thread tags hold: one thread at a time
 `Water.read_snapshot`, which any thread may call.
 """
 from ._abi import (VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH, AllocateFn, Axes, BodyDef, BodyState, Border,
-                   ContextDef, DeviceCommand, DeviceDriver, DeviceInfo, DeviceState, DeviceStatus, Forces,
+                   ContextDef, DeviceCommand, DeviceDriver, DeviceFault, DeviceInfo, DeviceState, DeviceStatus, Forces,
                    FreeFn, LogLevel, MapInfo, MapSource, Model, Part, Pose, Position, Quaternion, RecorderDef,
                    ReplayInfo, ReplayStepResult, Skip, SourceState, Status, Surface, Twist, Vec3, WaterDef,
                    WaterState, WorldDef, WorldStats, Wrench)

@@ -258,6 +258,17 @@ class DeviceStatus(IntEnum):
     DEVICE_FAULT = 2
 
 
+class DeviceFault(IntEnum):
+    DEVICE_FAULT_NONE = 0
+    DEVICE_FAULT_SHORT_PACKET = 1
+    DEVICE_FAULT_TIMEOUT = 2
+    DEVICE_FAULT_UNPLUGGED = 4
+    DEVICE_FAULT_STUCK_ENCODER = 8
+    DEVICE_FAULT_SLACK_STRING = 16
+    DEVICE_FAULT_BROKEN_STRING = 32
+    DEVICE_FAULT_UNCALIBRATED = 64
+
+
 class DeviceInfo(Struct):
     _fields_ = [("struct_size", c_uint32), ("serial", c_uint32), ("max_force", c_float),
                 ("max_torque", c_float), ("period_ns", c_uint64), ("name", c_char * 64)]
@@ -270,7 +281,8 @@ class DeviceCommand(Struct):
 
 class DeviceState(Struct):
     _fields_ = [("struct_size", c_uint32), ("status", c_uint32), ("pose", Pose), ("twist", Twist),
-                ("grip", c_float), ("buttons", c_uint32), ("time_ns", c_uint64), ("sequence", c_uint64)]
+                ("grip", c_float), ("buttons", c_uint32), ("time_ns", c_uint64), ("sequence", c_uint64),
+                ("achieved", Wrench), ("faults", c_uint32), ("reserved", c_uint32)]
 
 
 class DeviceDriver(Struct):
@@ -314,7 +326,7 @@ class ReplayStepResult(Struct):
 
 # ---- The tables --------------------------------------------------------------------------------------------
 
-ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, Part)
+ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, DeviceFault, Part)
 
 STRUCTS = (Vec3, Position, Quaternion, Pose, Twist, Wrench, ContextDef, MapInfo, MapSource, WorldDef,
            WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, SourceState, DeviceInfo,
