@@ -1,6 +1,5 @@
 // What the header tags [realtime] takes no lock and calls no system: every lock of this program is counted, and a process
 // that may not call the system ticks on. (That it allocates nothing: test_allocation.cpp.)
-#include <dlfcn.h>
 #include <linux/seccomp.h>
 #include <pthread.h>
 #include <sys/prctl.h>
@@ -8,37 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 
 #include "tests/support/library.h"
+#include "tests/support/locks.h"
 
-namespace {
-
-std::atomic<std::size_t> locks{0};
-
-template <typename Function>
-Function* next_one(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-
-extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) {
-    static auto* const real = next_one<int(pthread_mutex_t*)>("pthread_mutex_lock");
-    ++locks;
-    return real(mutex);
-}
-extern "C" int pthread_rwlock_rdlock(pthread_rwlock_t* lock) {
-    static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
-    ++locks;
-    return real(lock);
-}
-extern "C" int pthread_rwlock_wrlock(pthread_rwlock_t* lock) {
-    static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_wrlock");
-    ++locks;
-    return real(lock);
-}
+using frm::test::locks;
 
 namespace {
 

@@ -1,0 +1,9 @@
+// Every operator new of the program that this is linked into, counted.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+namespace frm::test {
+extern std::atomic<std::size_t> allocations;
+}

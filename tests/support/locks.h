@@ -1,0 +1,9 @@
+// Every lock that the program takes which this is linked into, counted.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+namespace frm::test {
+extern std::atomic<std::size_t> locks;
+}
