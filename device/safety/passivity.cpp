@@ -40,7 +40,7 @@ Vec3f Passivity::control(const Vec3f& force, float dt, const PassivityLimits& li
     gain_ += active ? -dt / attack_time * (1 - least_gain) : dt / release_time * (1 - least_gain);
     if (gain_ > 1) gain_ = 1;
     if (gain_ < least_gain) gain_ = least_gain;
-    const Vec3f out = slow_command_ + (force - slow_command_) * gain_;
+    const Vec3f out = gain_ < 1 ? slow_command_ + (force - slow_command_) * gain_ : force;
     const float square = dot(quick_velocity_, quick_velocity_);
     if (!active || !(square > limits.dead_band * limits.dead_band)) return out;
     damping_ = -energy_ / (dt * square);

@@ -58,6 +58,8 @@ public:
     const Vec3d& position() const { return x_; }
     const Vec3d& velocity() const { return v_; }
     const Vec3d& spin() const { return w_; }
+    const Vec3d& rotation() const { return r_; }
+    void place_spin(const Vec3d& r, const Vec3d& w) { r_ = r, w_ = w, seen_spin_ = r, smooth_spin_ = w; }
     void place(const Vec3d& x, const Vec3d& v = {}) { x_ = x, v_ = v, seen_ = x, smooth_ = v; }
 
     static const frm_device_driver& driver() {
