@@ -87,8 +87,8 @@ int main(int argc, char** argv) {
                         "{\"map\":\"%s\",\"hand\":\"%s\",\"mass\":%g,\"damping\":%g,\"stiffness\":%g,\"rate\":%g,"
                         "\"passivity\":%d,\"speed\":0.5,\"unit_force\":%.6g,\"scale\":%.6g,\"ended\":%d,"
                         "\"beyond\":%.6g,\"force\":%.6g,\"gain\":%.4g}\n",
-                        name.c_str(), hand.name, hand.hand.mass, hand.hand.damping, hand.hand.stiffness, rate, passivity,
-                        unit.mean_force, stable, found, left, at.mean_force, at.quick_gain);
+                        name.c_str(), hand.name, hand.hand.mass, hand.hand.damping, hand.hand.stiffness, rate,
+                        passivity, unit.mean_force, stable, found, left, at.mean_force, at.quick_gain);
                     std::fflush(stdout);
                 }
         }

@@ -36,8 +36,9 @@ TEST_CASE("the detector of limit cycles sees them, and nothing else", "[stabilit
         return out;
     };
     CHECK(quick_amplitude(series([](double t) { return 0.5 * t; }), 100) < 1e-12);  // a steady stroke
-    CHECK(std::fabs(quick_amplitude(series([](double t) { return 0.5 * t + 0.001 * std::sin(2 * 3.14159265 * 40 * t); }),
-                                    100) - 0.002) < 3e-5);
+    CHECK(std::fabs(quick_amplitude(
+                        series([](double t) { return 0.5 * t + 0.001 * std::sin(2 * 3.14159265 * 40 * t); }), 100) -
+                    0.002) < 3e-5);
     CHECK(quick_amplitude(series([](double t) { return 0.01 * std::sin(2 * 3.14159265 * 0.5 * t); }), 100) < 2e-4);
 }
 
@@ -95,7 +96,8 @@ TEST_CASE("the same for torque", "[stability]") {
         return run_haptic_case(c);
     };
     const HapticResult without = turning(false), with = turning(true);
-    INFO(without.amplitude << " rad without, " << with.amplitude << " rad with, faults " << without.faults << " " << with.faults << ", gain " << with.quick_gain << ", damped " << with.damped);
+    INFO(without.amplitude << " rad without, " << with.amplitude << " rad with, faults " << without.faults << " "
+                           << with.faults << ", gain " << with.quick_gain << ", damped " << with.damped);
     CHECK(without.amplitude > 0.02);
     CHECK(with.amplitude < 0.6 * without.amplitude);
     CHECK(with.faults == 0);

@@ -18,11 +18,11 @@ struct HapticCase {
     HandDeviceDef device;
     bool passivity = true;
     float force_scale = 1, torque_scale = 0;
-    double speed = 0.5;            ///< m/s along y: of the hand's wish
-    double spin = 0;               ///< rad/s about z
+    double speed = 0.5;  ///< m/s along y: of the hand's wish
+    double spin = 0;     ///< rad/s about z
     Vec3d start{0, 0, -0.3};
     double seconds = 2;
-    std::int32_t cells = 120;      ///< of the water, 25 mm each
+    std::int32_t cells = 120;  ///< of the water, 25 mm each
 };
 
 struct HapticResult {
@@ -67,14 +67,8 @@ inline HapticResult run_haptic_case(HapticCase c) {
     device.set_safety(safety);
     device.prepare();
     const api::Axes axes(FRM_AXES_Z_UP_RIGHT);
-    device::ServoLoop loop({axes,
-                            world,
-                            body,
-                            device,
-                            {{0, 0, 0}, {0, 0, 0, 1}},
-                            static_cast<std::uint32_t>(c.rate),
-                            nullptr,
-                            nullptr});
+    device::ServoLoop loop(
+        {axes, world, body, device, {{0, 0, 0}, {0, 0, 0, 1}}, static_cast<std::uint32_t>(c.rate), nullptr, nullptr});
     device::ServoRequests requests;
     requests.engage = true;
     requests.engaging = 1;
