@@ -42,7 +42,7 @@ struct Rig {
         frm_device_state state{};
         state.struct_size = sizeof state;
         REQUIRE(frm_device_exchange(device, &command, &state) == expected);
-        REQUIRE(size(hand.told.force) <= 20.0001);  // the device's own limit, whatever happens
+        REQUIRE(size(hand.commanded.force) <= 20.0001);  // the device's own limit, whatever happens
         return state;
     }
     void run(int cycles, const frm_vec3& force) {

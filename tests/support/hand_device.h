@@ -46,7 +46,8 @@ public:
     Vec3d leap;                 ///< added to the pose
 
     // What is seen.
-    frm_wrench told{};
+    frm_wrench told{};       ///< none once it was stopped, perhaps by the watchdog
+    frm_wrench commanded{};  ///< in the last exchange
     std::atomic<std::uint32_t> stops{0};  ///< the watchdog may count
     std::uint32_t calibrations = 0, exchanges = 0;
     std::uint32_t buttons = 0;
@@ -104,7 +105,7 @@ private:
 
     frm_status cycle(const frm_wrench& wrench, frm_device_state& state) {
         ++exchanges;
-        told = wrench;
+        told = commanded = wrench;
         if (answer != FRM_OK) return answer;
         sense(state);
         for (std::size_t i = line_.size() - 1; i > 0; --i) line_[i] = line_[i - 1];
