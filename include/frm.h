@@ -592,7 +592,8 @@ typedef struct frm_device_command {
     uint32_t struct_size;
     uint32_t reserved;
     frm_wrench wrench;    /* to be displayed, about the grip's origin, world frame */
-    uint64_t deadline_ns; /* the device goes to its safe state if no exchange follows within this; 0: its default */
+    uint64_t deadline_ns; /* the device goes to its safe state if no exchange follows within this; 0: what its
+                             frm_device_safety_def says */
 } frm_device_command;
 
 /* What the device tells the host in one exchange. */

@@ -34,7 +34,9 @@ void Watchdog::end() {
 }
 
 void Watchdog::feed(std::uint64_t deadline_ns) {
-    expires_.store(deadline_ns > 0 ? now_ns() + static_cast<std::int64_t>(deadline_ns) : 0, std::memory_order_release);
+    constexpr std::uint64_t year = 31'536'000'000'000'000;  // sums stay far from the end of the numbers
+    const auto deadline = static_cast<std::int64_t>(std::min(deadline_ns, year));
+    expires_.store(deadline > 0 ? now_ns() + deadline : 0, std::memory_order_release);
 }
 
 bool Watchdog::overdue() const {

@@ -21,14 +21,13 @@ struct NamedHand {
     Hand hand;
 };
 constexpr NamedHand hands[] = {{"light", {0.1, 1, 50, 2e-4, 2e-3, 0.2}}, {"firm", {0.3, 8, 400, 5e-4, 0.02, 2}}};
-constexpr double rates[] = {100, 200, 333, 500, 1000, 2000, 5000};
+constexpr double rates[] = {100, 200, 500, 1000, 2000, 5000};
 
 std::shared_ptr<const Map> read(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     auto map = std::make_shared<Map>();
     decode_map(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), *map);
-    map->complete();
     return map;
 }
 
@@ -40,7 +39,13 @@ HapticCase stroke(const std::shared_ptr<const Map>& map, const Hand& hand, doubl
     c.device.delay = 1;
     c.device.max_force = 200;
     c.speed = 0.5;
-    // The body's lower half is in the water at least.
+    // As heavy as the water that it displaces: what is scaled up is drag, not a lift that throws it out.
+    {
+        World world = world_of(WorldDef());
+        Body& body = world.create_body(body_of(map, {0, -0.5, -0.2}));
+        world.tick(0.001f);
+        c.mass = body.forces.total.force.z / world.def().fluid.gravity;
+    }
     c.start = {0, -0.5, -0.2};
     c.cells = 100;
     return c;
@@ -65,11 +70,11 @@ int main(int argc, char** argv) {
             const HapticResult unit = run_haptic_case(ideal(stroke(map, hand.hand, 5000)));
             for (const double rate : rates)
                 for (const bool passivity : {false, true}) {
-                    // What is stable is followed up by steps of a quarter of an octave to the first that is not.
+                    // What is stable is followed up by steps of half an octave to the first that is not.
                     double stable = 0, left = 0;
                     HapticResult at;
                     bool found = false;
-                    for (double scale = 1.0 / 64; scale < 65; scale *= std::sqrt(std::sqrt(2.0))) {
+                    for (double scale = 1.0 / 16; scale < 65; scale *= std::sqrt(2.0)) {
                         HapticCase c = stroke(map, hand.hand, rate);
                         c.force_scale = static_cast<float>(scale);
                         c.passivity = passivity;

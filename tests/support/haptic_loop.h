@@ -21,6 +21,7 @@ struct HapticCase {
     double speed = 0.5;  ///< m/s along y: of the hand's wish
     double spin = 0;     ///< rad/s about z
     Vec3d start{0, 0, -0.3};
+    float mass = 0;  ///< kg, of the body's weight
     double seconds = 2;
     std::int32_t cells = 120;  ///< of the water, 25 mm each
 };
@@ -57,7 +58,9 @@ inline HapticResult run_haptic_case(HapticCase c) {
     hand.place_spin({}, {0, 0, c.spin});
     World world = world_of(WorldDef());
     world.create_water(water_of(c.cells, 0.025f, 0.8f));
-    Body& body = world.create_body(body_of(c.map, c.start));
+    BodyDef held = body_of(c.map, c.start);
+    held.mass = c.mass;
+    Body& body = world.create_body(held);
     device::Device device(HandDevice::driver(), &hand, 0);
     frm_device_safety_def safety = device::default_safety();
     safety.passivity = c.passivity;
