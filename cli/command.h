@@ -27,6 +27,7 @@ void add_mesh(CLI::App& app);
 void add_flow(CLI::App& app);
 void add_force(CLI::App& app);
 void add_run(CLI::App& app);
+void add_servo(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_device(CLI::App& app);
 void add_bench(CLI::App& app);

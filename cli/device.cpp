@@ -52,7 +52,7 @@ void list(const Options& o) {
         if (!*source.argument)
             add(source.name);
         else if (!o.json)
-            std::printf("%s:%s: %s\n", source.name, source.argument, source.what);
+            std::printf("%s%s%s: %s\n", source.name, *source.argument == '[' ? "" : ":", source.argument, source.what);
     }
     if (o.json) std::printf("%s\n", nlohmann::ordered_json{{"devices", all}}.dump(2).c_str());
 }

@@ -1,5 +1,8 @@
 #include "cli/device_sources.h"
 
+#include <algorithm>
+#include <cstdlib>
+
 #include "cli/command.h"
 
 namespace frm::cli {
@@ -48,6 +51,46 @@ std::vector<frm_device_info> list_replay(const Session& session, const std::stri
     return list;
 }
 
+const char* configuration(const std::string& file) { return file.empty() ? nullptr : file.c_str(); }
+
+frm_device open_simulated(const Session& session, const std::string& file, std::uint32_t index) {
+    if (index != 0) throw Failure("sim: there is one device, number 0");
+    frm_device device = 0;
+    session.check(frm_device_open_simulated(session.context(), configuration(file), &device));
+    return device;
+}
+
+std::vector<frm_device_info> list_simulated(const Session& session, const std::string& file) {
+    const frm_device device = open_simulated(session, file, 0);
+    const frm_device_info info = info_of(session, device);
+    session.check(frm_device_close(device));
+    return {info};
+}
+
+std::vector<frm_device_info> list_spidar(const Session& session, const std::string& file) {
+    std::uint32_t count = 0;
+    std::vector<frm_device_info> list(16);  // as many as a rotary switch tells apart
+    for (frm_device_info& info : list) info.struct_size = sizeof info;
+    session.check(frm_device_enumerate_spidar_g(session.context(), configuration(file), list.data(),
+                                                static_cast<std::uint32_t>(list.size()), &count));
+    list.resize(std::min<std::size_t>(count, list.size()));
+    return list;
+}
+
+frm_device open_spidar(const Session& session, const std::string& file, std::uint32_t index) {
+    std::int32_t rotary = -1;
+    if (index > 0) {
+        const std::vector<frm_device_info> list = list_spidar(session, file);
+        if (index >= list.size())
+            throw Failure("spidar: there is no device " + std::to_string(index) + "; " + std::to_string(list.size()) +
+                          " answer");
+        rotary = static_cast<std::int32_t>(list[index].serial);
+    }
+    frm_device device = 0;
+    session.check(frm_device_open_spidar_g(session.context(), configuration(file), rotary, &device));
+    return device;
+}
+
 /// The source and the argument.
 std::pair<const DeviceSource*, std::string> find(const std::string& name) {
     const std::size_t colon = name.find(':');
@@ -55,13 +98,14 @@ std::pair<const DeviceSource*, std::string> find(const std::string& name) {
     std::string known;
     for (const DeviceSource& source : device_sources()) {
         if (before == source.name) {
-            if (*source.argument && after.empty())
+            if (*source.argument && *source.argument != '[' && after.empty())
                 throw Failure(name + ": " + source.argument + " is needed: " + source.name + ":" + source.argument);
             if (!*source.argument && colon != std::string::npos)
                 throw Failure(name + ": " + source.name + " takes nothing after a colon");
             return {&source, after};
         }
-        known += std::string(known.empty() ? "" : ", ") + source.name + (*source.argument ? ":" : "") + source.argument;
+        known += std::string(known.empty() ? "" : ", ") + source.name +
+                 (*source.argument && *source.argument != '[' ? ":" : "") + source.argument;
     }
     throw Failure(name + ": there is no such driver; there are " + known);
 }
@@ -72,6 +116,9 @@ const std::vector<DeviceSource>& device_sources() {
     static const std::vector<DeviceSource> sources{
         {"null", "", "a device that is not there: it rests at the origin", list_null, open_null},
         {"replay", "FILE", "the devices of a recording, moving as they did", list_replay, open_replay},
+        {"sim", "[:CONFIGURATION]", "a simulated SPIDAR-G, held by a simulated hand", list_simulated, open_simulated},
+        {"spidar", "[:CONFIGURATION]", "SPIDAR-G by libusb or hidapi; not yet run on hardware", list_spidar,
+         open_spidar},
     };
     return sources;
 }

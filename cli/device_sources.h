@@ -11,7 +11,7 @@ namespace frm::cli {
 
 struct DeviceSource {
     const char* name;
-    const char* argument;  ///< what follows the name after a colon; empty: nothing does
+    const char* argument;  ///< what follows the name after a colon; empty: nothing does; in brackets: what may
     const char* what;
     std::function<std::vector<frm_device_info>(const Session&, const std::string& argument)> list;
     std::function<frm_device(const Session&, const std::string& argument, std::uint32_t index)> open;

@@ -41,6 +41,7 @@ void add_commands(CLI::App& app) {
     frm::cli::add_flow(app);
     frm::cli::add_force(app);
     frm::cli::add_run(app);
+    frm::cli::add_servo(app);
     frm::cli::add_replay(app);
     frm::cli::add_device(app);
     frm::cli::add_bench(app);

@@ -90,24 +90,32 @@ frm_status FRM_CALL frm_device_open_simulated(frm_context context, const char* c
 }
 
 frm_status FRM_CALL frm_device_close(frm_device device) {
-    return with<Device>(device, [&](Context& c, Device&) { c.remove(device); });
+    return with<Device>(device, [&](Context& c, Device& object) {
+        if (object.servos > 0) throw Error(FRM_ERROR_STATE, "a servo uses this device: destroy it first");
+        c.remove(device);
+    });
 }
 
 frm_status FRM_CALL frm_device_get_info(frm_device device, frm_device_info* info) {
     return with<Device>(device, [&](Context&, Device& object) {
         require_out(info, "info");
+        device::require_not_served(object);
         write_struct(info, object.info());
     });
 }
 
 frm_status FRM_CALL frm_device_calibrate(frm_device device) {
-    return with<Device>(device, [&](Context&, Device& object) { object.calibrate(); });
+    return with<Device>(device, [&](Context&, Device& object) {
+        device::require_not_served(object);
+        object.calibrate();
+    });
 }
 
 frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_device_command* command, frm_device_state* state) {
     return with<Device>(device, [&](Context& c, Device& object) {
         require_out(state, "state");
         const frm_device_command checked = read_def(command, frm_device_command{}, "command");
+        device::require_not_served(object);
         write_struct(state, object.exchange(c.axes(), checked));
     });
 }
@@ -126,7 +134,10 @@ frm_status FRM_CALL frm_device_get_raw(frm_device device, uint8_t* data, uint32_
 }
 
 frm_status FRM_CALL frm_device_stop(frm_device device) {
-    return with<Device>(device, [&](Context&, Device& object) { object.stop(); });
+    return with<Device>(device, [&](Context&, Device& object) {
+        device::require_not_served(object);
+        object.stop();
+    });
 }
 
 frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def* def, uint64_t size) {
@@ -154,8 +165,10 @@ frm_status FRM_CALL frm_recorder_create(frm_world world, const char* path, const
 
 frm_status FRM_CALL frm_recorder_add_device(frm_recorder recorder, frm_device device) {
     return with<Recorder>(recorder, [&](Context& c, Recorder& object) {
+        require_not_served(object.world());
         Object* found = c.find(device, Kind::device);
         if (!found) throw Error(FRM_ERROR_HANDLE, "this is not a device of this context, or it is no more");
+        device::require_not_served(static_cast<Device&>(*found));
         object.add_device(static_cast<Device&>(*found));
     });
 }
@@ -169,6 +182,7 @@ frm_status FRM_CALL frm_recorder_get_stats(frm_recorder recorder, frm_recorder_s
 
 frm_status FRM_CALL frm_recorder_close(frm_recorder recorder) {
     return with<Recorder>(recorder, [&](Context& c, Recorder& object) {
+        require_not_served(object.world());
         try {
             object.close();
         } catch (...) {

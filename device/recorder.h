@@ -28,6 +28,7 @@ public:
     Recorder(api::WorldObject& world, const char* path, const RecorderDef& def, std::uint32_t axes);
     ~Recorder() override;
 
+    const api::WorldObject& world() const { return world_; }
     void add_device(Device& device);
     void forget(Device& device);
     /// Throws Error: FRM_ERROR_FILE if anything could not be written, FRM_ERROR_CAPACITY if anything was lost.

@@ -38,7 +38,7 @@
  *
  * Handles are 64-bit values; 0 is none. A handle that is stale (until 16 million more objects have been made) or of
  * another type gives FRM_ERROR_HANDLE, never a crash. Destroying an object destroys what was made in it: a context its
- * maps, worlds, devices, recorders and replays; a world its water and bodies.
+ * maps, worlds, devices, servos, recorders and replays; a world its water and bodies.
  *
  * Structs that may grow begin with struct_size. Fill a def with its _def_init, then change what you need; a NULL
  * def pointer means all defaults where the function says so. Set struct_size = sizeof of every struct that the
@@ -119,6 +119,7 @@ typedef uint64_t frm_body;
 typedef uint64_t frm_device;
 typedef uint64_t frm_recorder;
 typedef uint64_t frm_replay;
+typedef uint64_t frm_servo;
 
 typedef struct frm_vec3 {
     float x, y, z;
@@ -580,8 +581,9 @@ typedef enum frm_device_status {
     FRM_DEVICE_FAULT = 2         /* forces are off until the cause is gone */
 } frm_device_status;
 
-/* Why a device is not ready, as bits of frm_device_state.faults. */
+/* What is wrong with a device, as bits. A driver reports what it sees in frm_device_state.faults. */
 typedef enum frm_device_fault {
+    FRM_DEVICE_FAULT_NONE = 0,
     FRM_DEVICE_FAULT_UNCALIBRATED = 1,    /* frm_device_calibrate has to come first */
     FRM_DEVICE_FAULT_SHORT_PACKET = 2,    /* an answer was cut off */
     FRM_DEVICE_FAULT_TIMEOUT = 4,         /* no answer in time */
@@ -591,7 +593,15 @@ typedef enum frm_device_fault {
     FRM_DEVICE_FAULT_STUCK_ENCODER = 64,  /* a length stands still while the others say that it changes */
     FRM_DEVICE_FAULT_SLACK_STRING = 128,  /* a string is longer than the way that it spans; passes when it is tight */
     FRM_DEVICE_FAULT_BROKEN_STRING = 256, /* a string is shorter than the way that it spans, or runs off */
-    FRM_DEVICE_FAULT_DEADLINE = 512       /* no exchange within the deadline: it was in its safe state since */
+    FRM_DEVICE_FAULT_DEADLINE = 512,      /* no exchange within the deadline: it was in its safe state since */
+    /* What the safety layer finds by itself, beside the deadline: */
+    FRM_DEVICE_FAULT_COMMAND = 65536,    /* the host commanded a wrench that is not finite */
+    FRM_DEVICE_FAULT_STEP = 131072,      /* the commanded force leapt by more than any water can */
+    FRM_DEVICE_FAULT_SPEED = 262144,     /* the grip ran away */
+    FRM_DEVICE_FAULT_STATE = 1048576,    /* the driver's state is not finite or out of range */
+    FRM_DEVICE_FAULT_JUMP = 2097152,     /* the pose leapt further than a hand can */
+    FRM_DEVICE_FAULT_STALE = 4194304,    /* sequence or time stand still or run backwards */
+    FRM_DEVICE_FAULT_DRIVER = 8388608    /* a call of the driver failed, or its status is FRM_DEVICE_FAULT */
 } frm_device_fault;
 
 typedef struct frm_device_info {
@@ -608,7 +618,8 @@ typedef struct frm_device_command {
     uint32_t struct_size;
     uint32_t reserved;
     frm_wrench wrench;    /* to be displayed, about the grip's origin, world frame */
-    uint64_t deadline_ns; /* the device goes to its safe state if no exchange follows within this; 0: its default */
+    uint64_t deadline_ns; /* the device goes to its safe state if no exchange follows within this; 0: what its
+                             frm_device_safety_def says */
 } frm_device_command;
 
 /* What the device tells the host in one exchange. */
@@ -621,14 +632,17 @@ typedef struct frm_device_state {
     uint32_t buttons;  /* one bit each */
     uint64_t time_ns;  /* monotonic, the device's clock */
     uint64_t sequence; /* counts exchanges from 0 */
-    frm_wrench achieved; /* what the device was told to display for this exchange's command, within its limits */
+    frm_wrench achieved; /* that the device displays now, within its limits; a driver that leaves it displays what it
+                            was sent */
     uint32_t faults;     /* frm_device_fault, all that hold */
     uint32_t reserved;
 } frm_device_state;
 
 /* A driver: any host can write one. `user` is the pointer given to frm_device_open; `instance` is what open made.
- * Each returns an frm_status, and none may throw. Called only from within the frm_device_ function of its name,
- * and `close` also when the context is destroyed. */
+ * Each returns an frm_status, and none may throw. No two are called at a time for one instance. They are called from
+ * within the frm_device_ functions of their names; `info` also by frm_device_engage, `close` when the context is
+ * destroyed, all but `open` and `close` by a servo's thread, and `stop` whenever the safety layer finds a fault, on a
+ * thread of its own if the host has stalled. */
 typedef struct frm_device_driver {
     uint32_t struct_size;
     uint32_t reserved;
@@ -698,9 +712,11 @@ FRM_API frm_status FRM_CALL frm_device_get_info(frm_device device, frm_device_in
 /* Tells the device that its grip is at the reference pose. [owner] */
 FRM_API frm_status FRM_CALL frm_device_calibrate(frm_device device);
 
-/* One cycle. command may be null: no force. A command that is not finite is refused before the driver sees it, and a
- * state that is not finite is FRM_ERROR_DEVICE, after which the device has been stopped. Bounded as the driver
- * is. [realtime] */
+/* One cycle. command may be null: no force. What the device is sent is what the safety layer leaves of the wrench:
+ * nothing before frm_device_engage. A command that is not finite is refused before the driver sees it
+ * (FRM_ERROR_ARGUMENT), and a state that is not finite is FRM_ERROR_DEVICE; both stop an engaged device. A fault is not
+ * an error of this call: state.status is FRM_DEVICE_FAULT from the exchange in which it was found until it is cleared.
+ * Bounded as the driver is. FRM_ERROR_STATE while a servo runs the device. [realtime] */
 FRM_API frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_device_command *command,
                                                 frm_device_state *state);
 
@@ -709,8 +725,209 @@ FRM_API frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_dev
  * FRM_ERROR_CAPACITY. [realtime] */
 FRM_API frm_status FRM_CALL frm_device_get_raw(frm_device device, uint8_t *data, uint32_t capacity, uint32_t *size);
 
-/* Safe state at once. [realtime] */
+/* Safe state at once; disengages. [realtime] */
 FRM_API frm_status FRM_CALL frm_device_stop(frm_device device);
+
+/* ---- Safety ----------------------------------------------------------------------------------------------------- */
+
+/* What stands between every host and every device (docs/servo.md). A device is disengaged when it is opened: it gives
+ * its pose and feels nothing. Engaged, it is sent the commanded wrench times a ramp that grows from 0 to 1, limited in
+ * magnitude and slew, with damping where the loop makes energy. A fault takes the force away at once (for a grip that
+ * runs away: a brake first), stops the device and stays, with its reason, until frm_device_clear_fault; the way back
+ * leads over frm_device_engage and a ramp from zero. A limit of 0 that says so takes the device's own. */
+typedef struct frm_device_safety_def {
+    uint32_t struct_size;
+    uint32_t passivity;      /* 1 (default): passivity observer and controller (Hannaford and Ryu 2002); 0: none */
+    float max_force;         /* N, 0 to 1e4; default 0: frm_device_info.max_force, which is never exceeded */
+    float max_torque;        /* N m, 0 to 1e4; default 0: frm_device_info.max_torque, which is never exceeded */
+    float slew_time;         /* s, 0 to 1: the least for a change from none to the largest wrench; default 0.005 */
+    float ramp_time;         /* s, 0 to 60: from engaging to the whole force; default 1 */
+    float max_step;          /* N, 0 to 1e9: a larger change of the command between two exchanges is a fault; 0
+                                (default): never. For torque the same share of max_torque as this is of max_force */
+    float max_speed;         /* m/s, 0.01 to 1e3: faster is a fault, after which the grip is braked; default 3 */
+    float max_spin;          /* rad/s, 0.01 to 1e4; default 30 */
+    float brake_time;        /* s, 0 to 10: for so long a grip that ran away is braked; default 0.25 */
+    float grip_mass;         /* kg, 1e-3 to 1e3: the least that moves with the grip; default 0.1. Damping, of the brake
+                                and of the passivity controller, stays under grip_mass / (4 cycles) */
+    float grip_inertia;      /* kg m^2, 1e-8 to 1e3: the least, about the grip's origin; default 5e-5 */
+    float energy_reserve;    /* J, 0 to 1e3: what the quick part of the force may give before it counts as made by the
+                                loop; default 0.005 */
+    float quick_time;        /* s, 1e-3 to 10, and at least 20 cycles: what changes more slowly (weight, swell, current)
+                                is not the loop's; default 0.02 */
+    float dead_band;         /* m/s, 0 to 1: no damping of slower quick motion, which may be the encoders'; default
+                                0.005 */
+    float spin_dead_band;    /* rad/s, 0 to 10; default 0.05 */
+    uint32_t max_stale;      /* 1 to 1e6 exchanges in which sequence and time may stand still; default 20 */
+    uint32_t dead_man_buttons; /* a force only while one of these is held; 0 (default): always */
+    float dead_man_grip;     /* 0 to 1: a force only while the grip is closed as far; default 0 */
+    uint32_t reserved;
+    uint64_t deadline_ns;    /* 1e6 to 1e10: an engaged device that meets no exchange for so long is stopped; default
+                                5e7. frm_device_command.deadline_ns, where it is not 0, takes its place */
+} frm_device_safety_def;
+
+typedef struct frm_device_safety_state {
+    uint32_t struct_size;
+    uint32_t engaged;          /* 1: forces are sent; 2: they will be, when a good state has come */
+    uint32_t faults;           /* frm_device_fault, those that are latched */
+    float ramp;                /* 0 to 1 */
+    frm_wrench sent;           /* to the device, in the last exchange */
+    float energy;              /* J, within +-energy_reserve: of quick motion, what the hand gave less what it got */
+    float spin_energy;         /* of rotation */
+    float damping;             /* N s/m, of the passivity controller, in the last exchange */
+    float spin_damping;        /* N m s/rad */
+    float quick_gain;          /* of the quick part of the force, by the passivity controller: 1, down to 0.05 */
+    float quick_spin_gain;     /* of the torque */
+    uint64_t limited;          /* exchanges since engaging in which magnitude or slew were limited */
+    uint64_t damped;           /* in which the passivity controller damped */
+    uint64_t fault_count;      /* faults latched since the device was opened */
+    char reason[128];          /* of the first fault that is latched: UTF-8, closed by zero; empty without one */
+} frm_device_safety_state;
+
+/* Fills a def with defaults; writes at most `size` bytes. [any] */
+FRM_API frm_status FRM_CALL frm_device_safety_def_init(frm_device_safety_def *def, uint64_t size);
+
+/* Sets the limits. def may be null: the defaults. FRM_ERROR_STATE while the device is engaged. [owner] */
+FRM_API frm_status FRM_CALL frm_device_set_safety(frm_device device, const frm_device_safety_def *def);
+
+/* What the safety layer is doing. [realtime] */
+FRM_API frm_status FRM_CALL frm_device_get_safety(frm_device device, frm_device_safety_state *state);
+
+/* Forces from now on, beginning at zero. They begin when an exchange has given a good state; one that is not
+ * calibrated, faulty or too fast is a fault. FRM_ERROR_STATE while a fault is latched: the text has its reason. Again
+ * is no error. Starts the thread that watches the deadline. [owner] */
+FRM_API frm_status FRM_CALL frm_device_engage(frm_device device);
+
+/* No forces from now on: they go to zero within slew_time of exchanges. Again is no error. [realtime] */
+FRM_API frm_status FRM_CALL frm_device_disengage(frm_device device);
+
+/* Forgets the fault; the device stays disengaged. One whose cause remains comes back when it is engaged. Without a
+ * fault nothing happens. [realtime] */
+FRM_API frm_status FRM_CALL frm_device_clear_fault(frm_device device);
+
+/* ---- Servo ------------------------------------------------------------------------------------------------------ */
+
+/* A thread that closes the loop between a device and a body at a rate of its own: exchange with the device, move the
+ * body, tick the world, and send what the body feels with the next exchange. While it runs the world and the device
+ * are its own: other threads' calls that touch them give FRM_ERROR_STATE, except frm_water_read_snapshot and the
+ * functions of this section. What ticks depend on (dt, motion) does not depend on the clock: a recording of a servo's
+ * world replays to the same bits. */
+
+/* Called on the servo's thread in every tick, when its body has been moved and before the world is ticked: here the
+ * host may use the world (move other bodies). `tick` counts from 0. Bounded time, no lock. Another status than FRM_OK
+ * ends the servo with it. */
+typedef frm_status(FRM_CALL *frm_servo_tick_fn)(void *user, uint64_t tick, float dt);
+
+typedef struct frm_servo_def {
+    uint32_t struct_size;
+    uint32_t rate;         /* ticks a second, 100 to 5000; default 1000 */
+    frm_device device;     /* required */
+    frm_body body;         /* required: what the grip holds; its world is what the servo ticks */
+    frm_pose grip;         /* of the body's frame in the grip's, m, not scaled; default: the same */
+    uint32_t priority;     /* real-time (SCHED_FIFO), 1 to 99, where the system allows it; 0: none; default 80 */
+    uint32_t lock_memory;  /* 1 (default): asks the system to keep the process's memory in core (mlockall of what there
+                              is when it starts, for the whole process, until that ends), where it may; 0: does not */
+    frm_servo_tick_fn on_tick; /* may be null (default) */
+    void *user;                /* for on_tick */
+} frm_servo_def;
+
+/* What the host tells a servo, at any time. */
+typedef struct frm_servo_input {
+    uint32_t struct_size;
+    float motion_scale; /* m in the world for each m of the device, 1e-3 to 1e3; default 1. Rotation is not scaled */
+    float force_scale;  /* of what the body feels, 0 to 1e3; default 1 */
+    float torque_scale; /* 0 to 1e3; default 1 */
+    frm_pose anchor;    /* of the device's frame in the world: where the grip's origin is; default the world's frame */
+    frm_wrench extra;   /* added to what is displayed, about the grip's origin, world frame, not scaled; default 0 */
+} frm_servo_input;
+
+/* A servo as it was after its last tick. */
+typedef struct frm_servo_state {
+    uint32_t struct_size;
+    uint32_t running;     /* 1: its thread ticks */
+    uint64_t ticks;       /* of this servo since it was started */
+    double time;          /* of the world, s */
+    frm_pose pose;        /* of the body */
+    frm_twist twist;
+    frm_wrench wrench;    /* on the body, the total of its forces */
+    frm_wrench displayed; /* by the device, in its own frame */
+    frm_pose grip_pose;   /* in the device's own frame */
+    float grip;           /* as in frm_device_state, and what follows */
+    uint32_t buttons;
+    uint32_t device_status;
+    uint32_t engaged;     /* as in frm_device_safety_state, and what follows */
+    uint32_t faults;
+    float ramp;
+    float energy;
+    int32_t status;       /* an frm_status: FRM_OK, or the last failure of an exchange or tick, or what ended it */
+    char reason[128];     /* of the fault that is latched, or of that failure; UTF-8, closed by zero */
+} frm_servo_state;
+
+/* How punctual a servo is, since it was started. Times in ns. Quantiles are upper edges of histogram bins: at most a
+ * quarter too large. */
+typedef struct frm_servo_stats {
+    uint32_t struct_size;
+    uint32_t realtime;        /* 1: real-time priority was given */
+    uint64_t period_ns;
+    uint64_t ticks;
+    uint64_t missed;          /* ticks that ended after the next should have begun */
+    uint64_t skipped;         /* periods without a tick: the world's time lacks them */
+    uint64_t failed_exchanges;
+    uint64_t diverged;        /* ticks that gave FRM_ERROR_DIVERGED */
+    uint64_t tick_p50, tick_p99, tick_p9999, tick_max; /* from waking to the end of the tick */
+    uint64_t late_p50, late_p99, late_p9999, late_max; /* of waking, after the time at which it should: the jitter */
+    uint32_t memory_locked;   /* 1: memory was locked */
+    uint32_t reserved;
+} frm_servo_stats;
+
+typedef enum frm_servo_time {
+    FRM_SERVO_TICK = 0, /* how long ticks take */
+    FRM_SERVO_LATE = 1  /* how late they begin */
+} frm_servo_time;
+
+/* Fills a def with defaults; writes at most `size` bytes. [any] */
+FRM_API frm_status FRM_CALL frm_servo_def_init(frm_servo_def *def, uint64_t size);
+
+/* Fills an input with defaults; writes at most `size` bytes. [any] */
+FRM_API frm_status FRM_CALL frm_servo_input_init(frm_servo_input *input, uint64_t size);
+
+/* Makes a servo, which stands still. Device, body and world cannot be destroyed while it is there. A device takes one
+ * (FRM_ERROR_STATE). [owner] */
+FRM_API frm_status FRM_CALL frm_servo_create(frm_context context, const frm_servo_def *def, frm_servo *servo);
+
+/* Stops it and destroys it. [owner] */
+FRM_API frm_status FRM_CALL frm_servo_destroy(frm_servo servo);
+
+/* Starts its thread; statistics begin anew. What the system did not allow (priority, locked memory) is in
+ * frm_servo_stats and no error. FRM_ERROR_STATE while another servo runs this world. [owner] */
+FRM_API frm_status FRM_CALL frm_servo_start(frm_servo servo);
+
+/* Ends its thread after the tick that it is in; the device is disengaged and stopped. Again is no error. [owner] */
+FRM_API frm_status FRM_CALL frm_servo_stop(frm_servo servo);
+
+/* Tells it something else from its next tick on. Never waits for the servo. [owner] */
+FRM_API frm_status FRM_CALL frm_servo_set_input(frm_servo servo, const frm_servo_input *input);
+
+/* As frm_device_engage, in its next tick; if a fault is latched then, nothing happens. May be asked for before it is
+ * started. [owner] */
+FRM_API frm_status FRM_CALL frm_servo_engage(frm_servo servo);
+
+/* As frm_device_disengage, in its next tick. [owner] */
+FRM_API frm_status FRM_CALL frm_servo_disengage(frm_servo servo);
+
+/* As frm_device_clear_fault, in its next tick. [owner] */
+FRM_API frm_status FRM_CALL frm_servo_clear_fault(frm_servo servo);
+
+/* The newest state. Never waits for the servo and never makes it wait. [any] */
+FRM_API frm_status FRM_CALL frm_servo_get_state(frm_servo servo, frm_servo_state *state);
+
+/* Its statistics, while it runs too. [any] */
+FRM_API frm_status FRM_CALL frm_servo_get_stats(frm_servo servo, frm_servo_stats *stats);
+
+/* A histogram of ticks, `which` an frm_servo_time. Bin i counts those from edges[i] (ns) to edges[i + 1]; the first
+ * holds what is shorter too, the last what is longer. Each array may be null; *count receives the number of bins.
+ * `capacity` below the number while an array is not null: FRM_ERROR_CAPACITY. [any] */
+FRM_API frm_status FRM_CALL frm_servo_get_histogram(frm_servo servo, uint32_t which, uint64_t *edges, uint64_t *counts,
+                                                    uint32_t capacity, uint32_t *count);
 
 /* ---- Recorder and replay -------------------------------------------------------------------------------------- */
 

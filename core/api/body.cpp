@@ -62,6 +62,7 @@ frm_status FRM_CALL frm_body_create(frm_world world, const frm_body_def* def, fr
 frm_status FRM_CALL frm_body_get_def(frm_body body, frm_body_def* def) {
     return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
         require_out(def, "def");
+        require_not_served(object.world);
         const BodyDef& d = object.body.def;
         frm_body_def out{};
         out.scale = d.scale;
@@ -78,6 +79,7 @@ frm_status FRM_CALL frm_body_get_def(frm_body body, frm_body_def* def) {
 frm_status FRM_CALL frm_body_destroy(frm_body body) {
     return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
         require_changeable(object.world);
+        if (object.users > 0) throw Error(FRM_ERROR_STATE, "a servo uses this body: destroy it first");
         object.world.world.destroy_body(object.body);
         c.remove(body);
     });
@@ -96,6 +98,7 @@ frm_status FRM_CALL frm_body_set_motion(frm_body body, const frm_pose* pose, con
 frm_status FRM_CALL frm_body_get_forces(frm_body body, frm_forces* forces) {
     return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
         require_out(forces, "forces");
+        require_not_served(object.world);
         const Forces& f = object.body.forces;
         frm_forces out{};
         out.total = c.axes().wrench_out(f.total);
@@ -110,6 +113,7 @@ frm_status FRM_CALL frm_body_get_forces(frm_body body, frm_forces* forces) {
 frm_status FRM_CALL frm_body_get_state(frm_body body, frm_body_state* state) {
     return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
         require_out(state, "state");
+        require_not_served(object.world);
         const Body& b = object.body;
         frm_body_state out{};
         out.wet_area = b.wet_area;
@@ -140,6 +144,7 @@ frm_status FRM_CALL frm_body_get_coefficients(frm_body body, frm_coefficients* c
 frm_status FRM_CALL frm_body_get_sources(frm_body body, frm_source_state* sources, uint32_t capacity, uint32_t* count) {
     return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
         require_pointer(count, "count");
+        require_not_served(object.world);
         const Body& b = object.body;
         *count = static_cast<std::uint32_t>(b.sources.size());
         if (!sources) return;

@@ -73,6 +73,8 @@ const char* name_of(Kind kind) {
             return "recorder";
         case Kind::replay:
             return "replay";
+        case Kind::servo:
+            return "servo";
         case Kind::none:
             break;
     }
@@ -99,9 +101,9 @@ Context::Context(const frm_context_def& def, std::uint8_t number, std::atomic<st
       messages_(def.log_capacity, Message(), &memory_) {}
 
 Context::~Context() {
-    // Who uses before what is used: a recorder closes its file, a device is stopped.
+    // Who uses before what is used: a servo's thread ends, a recorder closes its file, a device is stopped.
     for (const Kind kind :
-         {Kind::recorder, Kind::replay, Kind::device, Kind::body, Kind::water, Kind::world, Kind::map})
+         {Kind::servo, Kind::recorder, Kind::replay, Kind::device, Kind::body, Kind::water, Kind::world, Kind::map})
         end(kind);
     for (auto& chunk : chunks_) {
         Chunk* c = chunk.load();

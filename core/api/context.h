@@ -17,7 +17,7 @@
 
 namespace frm::api {
 
-enum class Kind : std::uint8_t { none = 0, context, map, world, water, body, device, recorder, replay };
+enum class Kind : std::uint8_t { none = 0, context, map, world, water, body, device, recorder, replay, servo };
 
 const char* name_of(Kind kind);
 

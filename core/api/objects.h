@@ -18,9 +18,16 @@ struct WorldObject : Object {
         : world(def, threads, memory) {}
     World world;
     std::uint64_t handle = 0;
-    std::uint32_t users = 0;  ///< recorders and replays
+    std::uint32_t users = 0;  ///< recorders, replays and servos
     bool replayed = false;    ///< belongs to a replay, which alone may change it
+    std::atomic<const void*> served{nullptr};  ///< while a servo runs it: that thread's this_thread()
 };
+
+/// An address that stands for the calling thread.
+inline const void* this_thread() {
+    static thread_local const char here = 0;
+    return &here;
+}
 
 struct WaterObject : Object {
     explicit WaterObject(WorldObject& w) : world(w) {}
@@ -32,6 +39,7 @@ struct BodyObject : Object {
     BodyObject(WorldObject& w, Body& b) : world(w), body(b) {}
     WorldObject& world;
     Body& body;
+    std::uint32_t users = 0;  ///< servos
 };
 
 template <>
@@ -51,7 +59,15 @@ struct KindOf<BodyObject> {
     static constexpr Kind kind = Kind::body;
 };
 
+/// Not while a servo's thread has the world, unless it is that thread.
+inline void require_not_served(const WorldObject& world) {
+    const void* const servo = world.served.load(std::memory_order_acquire);
+    if (servo && servo != this_thread())
+        throw Error(FRM_ERROR_STATE, "a servo runs this world: read it through the servo or snapshots, or stop it");
+}
+
 inline void require_changeable(const WorldObject& world) {
+    require_not_served(world);
     if (world.replayed) throw Error(FRM_ERROR_STATE, "this world belongs to a replay and can only be looked at");
 }
 

@@ -131,6 +131,7 @@ frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def* def) {
 
 frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state* state) {
     return with<WaterObject>(water, [&](Context&, WaterObject& object) {
+        require_not_served(object.world);
         frm_water_state out = checked(state, object.water());
         out.tick = object.world.world.water_stepped_at();
         out.time = object.world.world.time() - static_cast<double>(object.world.world.water_behind());
@@ -189,6 +190,7 @@ frm_status FRM_CALL frm_water_get_height(frm_water water, double x, double y, do
         require_pointer(height, "height");
         require_range(x, -1e9, 1e9, "x");
         require_range(y, -1e9, 1e9, "y");
+        require_not_served(object.world);
         const Water& w = object.water();
         *height = object.world.world.def().level + static_cast<double>(w.field.height_at(w.origin_at(x, y), 0, 0));
     });

@@ -81,7 +81,7 @@ frm_status FRM_CALL frm_world_get_def(frm_world world, frm_world_def* def) {
 frm_status FRM_CALL frm_world_destroy(frm_world world) {
     return with<WorldObject>(world, [&](Context& c, WorldObject& object) {
         if (object.users > 0 || object.replayed)
-            throw Error(FRM_ERROR_STATE, "a recorder or a replay still uses this world");
+            throw Error(FRM_ERROR_STATE, "a recorder, a replay or a servo still uses this world");
         c.remove(world);
     });
 }
@@ -100,6 +100,7 @@ frm_status FRM_CALL frm_world_tick(frm_world world, float dt) {
 frm_status FRM_CALL frm_world_get_stats(frm_world world, frm_world_stats* stats) {
     return with<WorldObject>(world, [&](Context&, WorldObject& object) {
         require_out(stats, "stats");
+        require_not_served(object);
         const World& w = object.world;
         frm_world_stats out{};
         out.bodies = static_cast<std::uint32_t>(w.bodies().size());
@@ -128,6 +129,7 @@ frm_status FRM_CALL frm_world_get_stats(frm_world world, frm_world_stats* stats)
 frm_status FRM_CALL frm_world_hash(frm_world world, uint64_t* hash) {
     return with<WorldObject>(world, [&](Context&, WorldObject& object) {
         require_pointer(hash, "hash");
+        require_not_served(object);
         *hash = object.world.hash();
     });
 }

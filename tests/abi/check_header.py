@@ -9,7 +9,7 @@ import header
 
 TAG = re.compile(r"\[(any|owner|realtime|offline)\]")
 PLAIN = {"char", "int32_t", "uint8_t", "uint32_t", "int64_t", "uint64_t", "float", "double", "*"}
-HANDLES = {"frm_" + name for name in "context map world water body device recorder replay bake".split()}
+HANDLES = {"frm_" + name for name in "context map world water body device recorder replay servo bake".split()}
 # Values that will not grow; all other structs begin with struct_size. The sources' states go in arrays of many.
 FIXED = {"frm_vec3", "frm_position", "frm_quaternion", "frm_pose", "frm_twist", "frm_wrench", "frm_source_state"}
 

@@ -1,6 +1,5 @@
 // What the header tags [realtime] takes no lock and calls no system: every lock of this program is counted, and a process
 // that may not call the system ticks on. (That it allocates nothing: test_allocation.cpp.)
-#include <dlfcn.h>
 #include <linux/seccomp.h>
 #include <pthread.h>
 #include <sys/prctl.h>
@@ -11,33 +10,9 @@
 #include <cmath>
 
 #include "tests/support/library.h"
+#include "tests/support/locks.h"
 
-namespace {
-
-thread_local std::size_t locks = 0;  // of the thread that ticks: a recorder's own may lock
-
-template <typename Function>
-Function* next_one(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-
-extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) {
-    static auto* const real = next_one<int(pthread_mutex_t*)>("pthread_mutex_lock");
-    ++locks;
-    return real(mutex);
-}
-extern "C" int pthread_rwlock_rdlock(pthread_rwlock_t* lock) {
-    static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
-    ++locks;
-    return real(lock);
-}
-extern "C" int pthread_rwlock_wrlock(pthread_rwlock_t* lock) {
-    static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_wrlock");
-    ++locks;
-    return real(lock);
-}
+using frm::test::locks_here;
 
 namespace {
 
@@ -100,12 +75,12 @@ TEST_CASE("a tick takes no lock, recorded or not", "[realtime]") {
         Scene scene(recorded);
         REQUIRE(scene.tick());
         pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
-        const std::size_t before = locks;
+        const std::size_t before = locks_here;
         pthread_mutex_lock(&mutex);  // the counter counts
         pthread_mutex_unlock(&mutex);
-        REQUIRE(locks == before + 1);
+        REQUIRE(locks_here == before + 1);
         for (int t = 0; t < 500; ++t) REQUIRE(scene.tick());
-        CHECK(locks == before + 1);
+        CHECK(locks_here == before + 1);
     }
 }
 

@@ -99,12 +99,11 @@ TEST_CASE("a host's own driver is driven, and closed with its context", "[device
         frm_device_state state{};
         state.struct_size = sizeof state;
         REQUIRE(frm_device_exchange(device, &command, &state) == FRM_OK);
-        CHECK(circling.told.force.y == -3);
+        CHECK(circling.told.force.y == 0);  // it is not engaged: test_safety.cpp
         CHECK(state.pose.position.x == 1);
         CHECK(state.buttons == 5);
         command.wrench.torque.x = INFINITY;
         CHECK(frm_device_exchange(device, &command, &state) == FRM_ERROR_ARGUMENT);
-        CHECK(circling.told.force.y == -3);
         CHECK(circling.cycles == 1);
         CHECK_FALSE(circling.stopped);
         circling.bad = true;

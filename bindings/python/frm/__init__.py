@@ -18,19 +18,21 @@ The C header include/frm.h is the manual; names, units (SI) and rules are the sa
 else as array('f'), flat.
 
 Calls release Python's lock. The header's thread tags hold: one thread at a time per context, except for
-`Water.read_snapshot`, which any thread may call.
+`Water.read_snapshot` and what a `Servo` says of itself, which any thread may call.
 """
 from ._abi import (VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH, AllocateFn, Axes, BodyDef, BodyState, Border,
-                   Coefficients, ContextDef, DeviceCommand, DeviceDriver, DeviceFault, DeviceInfo, DeviceState, DeviceStatus, Forces,
-                   FreeFn, LogLevel, MapInfo, MapSource, Model, Part, Pose, Position, Quaternion, RecorderDef,
-                   RecorderStats, ReplayInfo, ReplayStepResult, ReplayTolerance, Skip, SourceState, Status, Surface, Twist, Vec3, WaterDef,
-                   WaterState, WorldDef, WorldStats, Wrench)
+                   Coefficients, ContextDef, DeviceCommand, DeviceDriver, DeviceFault, DeviceInfo, DeviceSafetyDef,
+                   DeviceSafetyState, DeviceState, DeviceStatus, Forces, FreeFn, LogLevel, MapInfo, MapSource,
+                   Model, Part, Pose, Position, Quaternion, RecorderDef, RecorderStats, ReplayInfo, ReplayStepResult,
+                   ReplayTolerance, ServoDef, ServoInput, ServoState, ServoStats, ServoTickFn, ServoTime, Skip,
+                   SourceState, Status, Surface, Twist, Vec3, WaterDef, WaterState, WorldDef, WorldStats, Wrench)
 from . import _abi
 from ._base import Context, Error, Object, version
 from ._device import Device
 from ._driver import Driver
 from ._library import LibraryError, library
 from ._recording import Recorder, Replay
+from ._servo import Servo
 from ._world import Body, Field, Map, Water, World
 
 __version__ = f"{VERSION_MAJOR}.{VERSION_MINOR}.{VERSION_PATCH}"

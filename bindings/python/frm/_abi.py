@@ -92,7 +92,7 @@ class Status(IntEnum):
 
 # ---- Handles and plain values ------------------------------------------------------------------------------
 
-frm_context = frm_map = frm_world = frm_water = frm_body = frm_device = frm_recorder = frm_replay = c_uint64
+frm_context = frm_map = frm_world = frm_water = frm_body = frm_device = frm_recorder = frm_replay = frm_servo = c_uint64
 
 
 class Vec3(Vector):
@@ -265,6 +265,7 @@ class DeviceStatus(IntEnum):
 
 
 class DeviceFault(IntEnum):
+    DEVICE_FAULT_NONE = 0
     DEVICE_FAULT_UNCALIBRATED = 1
     DEVICE_FAULT_SHORT_PACKET = 2
     DEVICE_FAULT_TIMEOUT = 4
@@ -275,6 +276,13 @@ class DeviceFault(IntEnum):
     DEVICE_FAULT_SLACK_STRING = 128
     DEVICE_FAULT_BROKEN_STRING = 256
     DEVICE_FAULT_DEADLINE = 512
+    DEVICE_FAULT_COMMAND = 65536
+    DEVICE_FAULT_STEP = 131072
+    DEVICE_FAULT_SPEED = 262144
+    DEVICE_FAULT_STATE = 1048576
+    DEVICE_FAULT_JUMP = 2097152
+    DEVICE_FAULT_STALE = 4194304
+    DEVICE_FAULT_DRIVER = 8388608
 
 
 class DeviceInfo(Struct):
@@ -305,6 +313,64 @@ class DeviceDriver(Struct):
         ("stop", CFUNCTYPE(frm_status, c_void_p, c_void_p)),
         ("raw", CFUNCTYPE(frm_status, c_void_p, c_void_p, POINTER(c_uint8), c_uint32, POINTER(c_uint32))),
     ]
+
+
+# ---- Safety ------------------------------------------------------------------------------------------------
+
+class DeviceSafetyDef(Struct):
+    _fields_ = [("struct_size", c_uint32), ("passivity", c_uint32), ("max_force", c_float),
+                ("max_torque", c_float), ("slew_time", c_float), ("ramp_time", c_float),
+                ("max_step", c_float), ("max_speed", c_float), ("max_spin", c_float),
+                ("brake_time", c_float), ("grip_mass", c_float), ("grip_inertia", c_float),
+                ("energy_reserve", c_float), ("quick_time", c_float), ("dead_band", c_float),
+                ("spin_dead_band", c_float), ("max_stale", c_uint32), ("dead_man_buttons", c_uint32),
+                ("dead_man_grip", c_float), ("reserved", c_uint32), ("deadline_ns", c_uint64)]
+
+
+class DeviceSafetyState(Struct):
+    _fields_ = [("struct_size", c_uint32), ("engaged", c_uint32), ("faults", c_uint32), ("ramp", c_float),
+                ("sent", Wrench), ("energy", c_float), ("spin_energy", c_float), ("damping", c_float),
+                ("spin_damping", c_float), ("quick_gain", c_float), ("quick_spin_gain", c_float),
+                ("limited", c_uint64), ("damped", c_uint64), ("fault_count", c_uint64),
+                ("reason", c_char * 128)]
+
+
+# ---- Servo -------------------------------------------------------------------------------------------------
+
+ServoTickFn = CFUNCTYPE(frm_status, c_void_p, c_uint64, c_float)
+
+
+class ServoDef(Struct):
+    _fields_ = [("struct_size", c_uint32), ("rate", c_uint32), ("device", frm_device), ("body", frm_body),
+                ("grip", Pose), ("priority", c_uint32), ("lock_memory", c_uint32), ("on_tick", ServoTickFn),
+                ("user", c_void_p)]
+
+
+class ServoInput(Struct):
+    _fields_ = [("struct_size", c_uint32), ("motion_scale", c_float), ("force_scale", c_float),
+                ("torque_scale", c_float), ("anchor", Pose), ("extra", Wrench)]
+
+
+class ServoState(Struct):
+    _fields_ = [("struct_size", c_uint32), ("running", c_uint32), ("ticks", c_uint64), ("time", c_double),
+                ("pose", Pose), ("twist", Twist), ("wrench", Wrench), ("displayed", Wrench),
+                ("grip_pose", Pose), ("grip", c_float), ("buttons", c_uint32), ("device_status", c_uint32),
+                ("engaged", c_uint32), ("faults", c_uint32), ("ramp", c_float), ("energy", c_float),
+                ("status", c_int32), ("reason", c_char * 128)]
+
+
+class ServoStats(Struct):
+    _fields_ = [("struct_size", c_uint32), ("realtime", c_uint32), ("period_ns", c_uint64),
+                ("ticks", c_uint64), ("missed", c_uint64), ("skipped", c_uint64),
+                ("failed_exchanges", c_uint64), ("diverged", c_uint64), ("tick_p50", c_uint64),
+                ("tick_p99", c_uint64), ("tick_p9999", c_uint64), ("tick_max", c_uint64),
+                ("late_p50", c_uint64), ("late_p99", c_uint64), ("late_p9999", c_uint64),
+                ("late_max", c_uint64), ("memory_locked", c_uint32), ("reserved", c_uint32)]
+
+
+class ServoTime(IntEnum):
+    SERVO_TICK = 0
+    SERVO_LATE = 1
 
 
 # ---- Recorder and replay -----------------------------------------------------------------------------------
@@ -347,12 +413,12 @@ class ReplayStepResult(Struct):
 
 # ---- The tables --------------------------------------------------------------------------------------------
 
-ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, DeviceFault,
-         Part)
+ENUMS = (Status, Axes, LogLevel, Model, Skip, Surface, Border, DeviceStatus, DeviceFault, ServoTime, Part)
 
 STRUCTS = (Vec3, Position, Quaternion, Pose, Twist, Wrench, ContextDef, MapInfo, MapSource, WorldDef,
            WorldStats, WaterDef, WaterState, BodyDef, Forces, BodyState, Coefficients, SourceState, DeviceInfo,
-           DeviceCommand, DeviceState, DeviceDriver, RecorderDef, RecorderStats, ReplayInfo, ReplayTolerance,
+           DeviceCommand, DeviceState, DeviceDriver, DeviceSafetyDef, DeviceSafetyState, ServoDef,
+           ServoInput, ServoState, ServoStats, RecorderDef, RecorderStats, ReplayInfo, ReplayTolerance,
            ReplayStepResult)
 
 _text = POINTER(c_char)
@@ -423,6 +489,27 @@ FUNCTIONS = {
     "frm_device_exchange": (frm_status, (frm_device, POINTER(DeviceCommand), POINTER(DeviceState))),
     "frm_device_get_raw": (frm_status, (frm_device, POINTER(c_uint8), c_uint32, _u32)),
     "frm_device_stop": (frm_status, (frm_device,)),
+
+    "frm_device_safety_def_init": (frm_status, (POINTER(DeviceSafetyDef), c_uint64)),
+    "frm_device_set_safety": (frm_status, (frm_device, POINTER(DeviceSafetyDef))),
+    "frm_device_get_safety": (frm_status, (frm_device, POINTER(DeviceSafetyState))),
+    "frm_device_engage": (frm_status, (frm_device,)),
+    "frm_device_disengage": (frm_status, (frm_device,)),
+    "frm_device_clear_fault": (frm_status, (frm_device,)),
+
+    "frm_servo_def_init": (frm_status, (POINTER(ServoDef), c_uint64)),
+    "frm_servo_input_init": (frm_status, (POINTER(ServoInput), c_uint64)),
+    "frm_servo_create": (frm_status, (frm_context, POINTER(ServoDef), _handle)),
+    "frm_servo_destroy": (frm_status, (frm_servo,)),
+    "frm_servo_start": (frm_status, (frm_servo,)),
+    "frm_servo_stop": (frm_status, (frm_servo,)),
+    "frm_servo_set_input": (frm_status, (frm_servo, POINTER(ServoInput))),
+    "frm_servo_engage": (frm_status, (frm_servo,)),
+    "frm_servo_disengage": (frm_status, (frm_servo,)),
+    "frm_servo_clear_fault": (frm_status, (frm_servo,)),
+    "frm_servo_get_state": (frm_status, (frm_servo, POINTER(ServoState))),
+    "frm_servo_get_stats": (frm_status, (frm_servo, POINTER(ServoStats))),
+    "frm_servo_get_histogram": (frm_status, (frm_servo, c_uint32, _u64, _u64, c_uint32, _u32)),
 
     "frm_recorder_def_init": (frm_status, (POINTER(RecorderDef), c_uint64)),
     "frm_recorder_create": (frm_status, (frm_world, c_char_p, POINTER(RecorderDef), _handle)),

@@ -4,8 +4,8 @@ from __future__ import annotations
 from ctypes import byref, c_uint8, c_uint32, sizeof
 
 from . import _abi
-from ._abi import DeviceCommand, DeviceDriver, DeviceInfo, DeviceState, Wrench
-from ._base import Context, Error, Object, utf8, wrap
+from ._abi import DeviceCommand, DeviceDriver, DeviceInfo, DeviceSafetyState, DeviceState, Wrench
+from ._base import Context, Error, Object, definition_of, utf8, wrap
 from ._driver import Driver
 
 
@@ -117,6 +117,28 @@ class Device(Object):
         """Safe state at once."""
         with _exceptions_of(self._driver):
             self._check(self._lib.frm_device_stop(self.handle))
+
+    def set_safety(self, **options) -> None:
+        """Sets the limits of the safety layer: the fields of DeviceSafetyDef, the rest at their defaults."""
+        definition = definition_of(_abi.DeviceSafetyDef, self._lib.frm_device_safety_def_init, "set_safety", options)
+        self._check(self._lib.frm_device_set_safety(self.handle, byref(definition)))
+
+    def safety(self) -> DeviceSafetyState:
+        """What the safety layer is doing; `reason` (bytes, UTF-8) says which fault is latched."""
+        return self._filled(DeviceSafetyState, self._lib.frm_device_get_safety)
+
+    def engage(self) -> None:
+        """Forces from now on, beginning at zero."""
+        with _exceptions_of(self._driver):
+            self._check(self._lib.frm_device_engage(self.handle))
+
+    def disengage(self) -> None:
+        """No forces from now on."""
+        self._check(self._lib.frm_device_disengage(self.handle))
+
+    def clear_fault(self) -> None:
+        """Forgets the fault that is latched; the device stays disengaged."""
+        self._check(self._lib.frm_device_clear_fault(self.handle))
 
     _driver = None
 

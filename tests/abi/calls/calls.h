@@ -73,6 +73,7 @@ void call_world(void);
 void call_water(void);
 void call_body(void);
 void call_device(void);
+void call_servo(void);
 void call_recording(void);
 
 #endif

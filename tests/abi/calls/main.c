@@ -243,6 +243,7 @@ int main(int argc, char **argv) {
     call_water();
     call_body();
     call_device();
+    call_servo();
     call_recording();
     destroy_fixture();
     printf("%d checks: %d failures\n", checks, failures);

@@ -1,0 +1,62 @@
+#include "device/safety/watchdog.h"
+
+#include <algorithm>
+#include <chrono>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace frm::device {
+namespace {
+
+std::int64_t now_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+constexpr std::int64_t longest_sleep = 10'000'000, shortest_sleep = 200'000;
+
+}  // namespace
+
+void Watchdog::begin() {
+    if (thread_.joinable()) return;
+    quit_.store(false);
+    try {
+        thread_ = std::thread([this] { watch(); });
+    } catch (const std::system_error& error) {
+        throw Error(FRM_ERROR_LIMIT, "the watchdog's thread cannot be started: %s", error.what());
+    }
+}
+
+void Watchdog::end() {
+    quit_.store(true);
+    if (thread_.joinable()) thread_.join();
+}
+
+void Watchdog::feed(std::uint64_t deadline_ns) {
+    constexpr std::uint64_t year = 31'536'000'000'000'000;  // sums stay far from the end of the numbers
+    const auto deadline = static_cast<std::int64_t>(std::min(deadline_ns, year));
+    expires_.store(deadline > 0 ? now_ns() + deadline : 0, std::memory_order_release);
+}
+
+bool Watchdog::overdue() const {
+    const std::int64_t expires = expires_.load(std::memory_order_acquire);
+    return expires != 0 && expires <= now_ns();
+}
+
+void Watchdog::expire() {
+    expires_.store(0);
+    expired_.store(true);
+}
+
+// Sleeps in short pieces instead of waiting for a signal: whoever feeds it takes no lock.
+void Watchdog::watch() {
+    while (!quit_.load()) {
+        const std::int64_t expires = expires_.load(std::memory_order_acquire);
+        if (overdue()) stop_(user_);
+        const std::int64_t left = expires != 0 ? expires - now_ns() : longest_sleep;
+        std::this_thread::sleep_for(std::chrono::nanoseconds(std::clamp(left, shortest_sleep, longest_sleep)));
+    }
+}
+
+}  // namespace frm::device
