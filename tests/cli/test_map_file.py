@@ -154,7 +154,7 @@ def test_bench(good):
     results = good("bench", "--seconds", "0.02", "--json").json["results"]
     assert len(results) >= 5 and len({r["name"] for r in results}) == len(results)
     for r in results:
-        assert isinstance(r["name"], str) and r["unit"] in ("us", "ns", "GB/s", "M/s", "")
+        assert isinstance(r["name"], str) and r["unit"] in ("us", "ns", "GB/s", "kB/s", "M/s", "")
     by_name = {r["name"]: r["value"] for r in results}
     for name in ("tick_200_us_median", "tick_200_us_p9999", "tick_128_us_median", "lookup_ns_per_source", "dry_body_ns",
                  "thousand_bodies_us"):

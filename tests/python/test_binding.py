@@ -621,7 +621,8 @@ def test_simulated_spidar_g(context):
         state = device.exchange()
         assert state.faults == frm.DEVICE_FAULT_UNCALIBRATED and state.status == frm.DEVICE_UNCALIBRATED
         device.calibrate()
-        for _ in range(1500):
+        device.engage()
+        for _ in range(2500):
             state = device.exchange(((0, 0, 3), (0, 0, 0)))
         assert state.faults == 0 and state.status == frm.DEVICE_READY
         assert state.achieved.force.z == pytest.approx(3, abs=0.05)

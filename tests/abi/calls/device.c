@@ -318,8 +318,9 @@ static void spidar_g(void) {
     OK(frm_device_exchange(device, NULL, &state));
     CHECK(state.status == FRM_DEVICE_UNCALIBRATED && state.faults == FRM_DEVICE_FAULT_UNCALIBRATED);
     OK(frm_device_calibrate(device));
+    OK(frm_device_engage(device)); /* the whole force after a ramp of a second, which is a thousand exchanges */
     command.wrench.force.y = 2.0f;
-    for (i = 0; i < 700; ++i) OK(frm_device_exchange(device, &command, &state));
+    for (i = 0; i < 1700; ++i) OK(frm_device_exchange(device, &command, &state));
     CHECK(state.status == FRM_DEVICE_READY && state.faults == 0);
     CHECK(state.achieved.force.y > 1.9f && state.achieved.force.y < 2.1f && state.pose.position.y > 0.001);
     simulated_device = device;
