@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/map/codec.h"
 #include "device/device.h"
+#include "device/start_thread.h"
 
 namespace frm::device {
 namespace {
@@ -35,7 +36,7 @@ Recorder::Recorder(api::WorldObject& world, const char* path, const RecorderDef&
     for (const auto& body : w.bodies()) body_created(w, *body);
     writer_.flush();
     bytes_ = writer_.bytes();
-    start();
+    if (has_threads) thread_ = start_thread("a recorder", [this] { work(); });
     world_.world.observe(this);
     ++world_.users;
     attached_ = true;
@@ -46,14 +47,6 @@ Recorder::~Recorder() {
         close();
     } catch (...) {
         // Whoever wants to know closes the recorder; what could be written is in the .part file.
-    }
-}
-
-void Recorder::start() {
-    try {
-        thread_ = std::thread([this] { work(); });
-    } catch (const std::system_error& error) {
-        throw Error(FRM_ERROR_LIMIT, "the recorder's thread cannot be started: %s", error.what());
     }
 }
 
@@ -74,7 +67,7 @@ void Recorder::close() {
         closing_ = true;
     }
     wake_.notify_one();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
     if (failure_) std::rethrow_exception(failure_);
     if (const std::uint64_t lost = lost_since_.exchange(0)) writer_.write(event::Gap{lost});
     writer_.write(event::End{world_.world.ticks()});
@@ -114,24 +107,27 @@ bool Recorder::has_room_again() {
     return good;
 }
 
+// Without threads whoever puts takes too: the queue is empty again, and what is written is the same.
 template <typename Fill>
 void Recorder::put(EventType type, std::size_t size, Fill&& fill) {
-    if (!def_.waits) {
-        if (!has_room_again() || !queue_.put(static_cast<std::uint32_t>(type), size, fill)) lose();
-        return;
+    if (def_.waits) {
+        while (!queue_.put(static_cast<std::uint32_t>(type), size, fill))
+            std::this_thread::sleep_for(std::chrono::microseconds(100));
+    } else if (!has_room_again() || !queue_.put(static_cast<std::uint32_t>(type), size, fill)) {
+        lose();
     }
-    while (!queue_.put(static_cast<std::uint32_t>(type), size, fill))
-        std::this_thread::sleep_for(std::chrono::microseconds(100));
+    if (!has_threads) take_all();
 }
 
 void Recorder::put(Event&& event) {
-    if (!thread_.joinable()) return writer_.write(event);  // the beginning
+    if (!attached_) return writer_.write(event);  // the beginning
     auto* const whole = new Event(std::move(event));
     const auto fill = [&](std::uint8_t* to) {
         std::memcpy(to, &whole, sizeof whole);
         return sizeof whole;
     };
     while (!has_room_again() || !queue_.put(whole_event, sizeof whole, fill)) std::this_thread::sleep_for(nap);
+    if (!has_threads) take_all();
 }
 
 void Recorder::work() {

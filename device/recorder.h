@@ -1,4 +1,5 @@
-// Writes down what a world is told and what it answers: handed over without waiting, written by a thread of its own.
+// Writes down what a world is told and what it answers: handed over without waiting, written by a thread of its own (where
+// there are no threads, at once).
 #pragma once
 
 #include <condition_variable>
@@ -72,7 +73,6 @@ private:
     void put(Event&& event);
     bool has_room_again();
     void lose();
-    void start();
     void work();
     void take_all();
     void take(std::uint32_t type, const std::uint8_t* data, std::size_t size);
@@ -84,7 +84,7 @@ private:
     RecorderDef def_;
     EventQueue queue_;
     std::atomic<std::uint64_t> lost_{0}, lost_since_{0}, bytes_{0}, ticks_{0};
-    std::exception_ptr failure_;  ///< of the thread
+    std::exception_ptr failure_;  ///< of the writing
     std::mutex lock_;
     std::condition_variable wake_;
     bool closing_ = false;

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <system_error>
 
-#include "core/error.h"
+#include "device/start_thread.h"
 
 namespace frm::device {
 namespace {
@@ -21,11 +20,7 @@ constexpr std::int64_t longest_sleep = 10'000'000, shortest_sleep = 200'000;
 void Watchdog::begin() {
     if (thread_.joinable()) return;
     quit_.store(false);
-    try {
-        thread_ = std::thread([this] { watch(); });
-    } catch (const std::system_error& error) {
-        throw Error(FRM_ERROR_LIMIT, "the watchdog's thread cannot be started: %s", error.what());
-    }
+    thread_ = start_thread("the watchdog of the deadline", [this] { watch(); });
 }
 
 void Watchdog::end() {

@@ -20,7 +20,7 @@ public:
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// Starts the thread, if it does not run. Throws Error (FRM_ERROR_LIMIT) if the system has none.
+    /// Starts the thread, if it does not run. Throws Error as start_thread().
     void begin();
     void end();
     /// [realtime] Counts from now on; 0: does not.

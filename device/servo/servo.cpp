@@ -1,8 +1,7 @@
 #include "device/servo/servo.h"
 
-#include <system_error>
-
 #include "device/servo/realtime.h"
+#include "device/start_thread.h"
 
 namespace frm::device {
 
@@ -56,11 +55,11 @@ void Servo::start() {
     locked_.store(def_.lock_memory && lock_memory());
     running_.store(true);
     try {
-        thread_ = std::thread([this] { run(); });
-    } catch (const std::system_error& error) {
+        thread_ = start_thread("the servo", [this] { run(); });
+    } catch (const Error&) {
         running_.store(false);
         release();
-        throw Error(FRM_ERROR_LIMIT, "the servo's thread cannot be started: %s", error.what());
+        throw;
     }
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "device/spidar_g/spidar_g.h"
+#include "device/start_thread.h"
 
 namespace frm::spidar_g {
 namespace {
@@ -19,7 +20,8 @@ void Watchdog::exchanged(std::uint64_t deadline_ns) {
     armed_.store(true, std::memory_order_relaxed);
 }
 
-Watchdog::Watchdog(SpidarG& device, std::mutex& mutex) : device_(device), mutex_(mutex), thread_([this] { run(); }) {}
+Watchdog::Watchdog(SpidarG& device, std::mutex& mutex)
+    : device_(device), mutex_(mutex), thread_(device::start_thread("SPIDAR-G", [this] { run(); })) {}
 
 Watchdog::~Watchdog() {
     {
