@@ -794,7 +794,8 @@ FRM_API frm_status FRM_CALL frm_device_get_safety(frm_device device, frm_device_
 
 /* Forces from now on, beginning at zero. They begin when an exchange has given a good state; one that is not
  * calibrated, faulty or too fast is a fault. FRM_ERROR_STATE while a fault is latched: the text has its reason. Again
- * is no error. Starts the thread that watches the deadline. [owner] */
+ * is no error. Starts the thread that watches the deadline; FRM_ERROR_UNSUPPORTED where libfrm was built without
+ * threads (WebAssembly). [owner] */
 FRM_API frm_status FRM_CALL frm_device_engage(frm_device device);
 
 /* No forces from now on: they go to zero within slew_time of exchanges. Again is no error. [realtime] */
@@ -898,7 +899,8 @@ FRM_API frm_status FRM_CALL frm_servo_create(frm_context context, const frm_serv
 FRM_API frm_status FRM_CALL frm_servo_destroy(frm_servo servo);
 
 /* Starts its thread; statistics begin anew. What the system did not allow (priority, locked memory) is in
- * frm_servo_stats and no error. FRM_ERROR_STATE while another servo runs this world. [owner] */
+ * frm_servo_stats and no error. FRM_ERROR_STATE while another servo runs this world; FRM_ERROR_UNSUPPORTED where
+ * libfrm was built without threads (WebAssembly). [owner] */
 FRM_API frm_status FRM_CALL frm_servo_start(frm_servo servo);
 
 /* Ends its thread after the tick that it is in; the device is disengaged and stopped. Again is no error. [owner] */
@@ -1009,7 +1011,8 @@ FRM_API frm_status FRM_CALL frm_recorder_def_init(frm_recorder_def *def, uint64_
  * as `path`.part and gets its name when it is closed; if the process dies, the .part file is still a recording that
  * lacks at most its last frame: 40 ms of the world's time (128 ticks, 4096 events), and what a thread that looks every
  * 5 ms had not taken yet. An existing file is replaced on closing, an older .part file at once: move it away first.
- * Recording starts that thread; calls that are real-time stay so, unless def.waits is set. path is UTF-8. [offline] */
+ * Recording starts that thread; calls that are real-time stay so, unless def.waits is set. Where libfrm was built
+ * without threads (WebAssembly), each call writes what it records itself. path is UTF-8. [offline] */
 FRM_API frm_status FRM_CALL frm_recorder_create(frm_world world, const char *path, const frm_recorder_def *def,
                                                 frm_recorder *recorder);
 

@@ -66,10 +66,10 @@ class Runner:
         os.makedirs(folder, exist_ok=True)
         return folder
 
-    def check(self, command):
+    def check(self, command, environment=None):
         """A program that has no hashes, but says on its own whether all is as it should be."""
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
-                              timeout=1800)
+                              env={**os.environ, **(environment or {})}, timeout=1800)
         self.failed |= done.returncode != 0
         say(f"  {'FAILED  ' if done.returncode else ''}{done.stdout.strip()}")
 
@@ -234,6 +234,7 @@ def arm64(run):
         every_set(run, variant, [*start, os.path.join(folder, "scene")], (1, 2, 8) if flags == "-O3" else (2,))
         run.scene(variant + ", libfrm.so", [*start, "-E", f"LD_LIBRARY_PATH={folder}", os.path.join(folder, "scene_shared")],
                   ["--threads", "2"])
+        run.check([*start, "-E", f"LD_LIBRARY_PATH={folder}", os.path.join(folder, "threads"), DATA, run.files()])
         run.objects(folder, "aarch64-linux-gnu-")
 
 
@@ -253,6 +254,7 @@ def windows(run):
             every_set(run, variant, [wine, os.path.join(folder, "scene.exe")], (1, 2, 8) if flags == "-O3" else (2,), environment,
                       best_alone=flags != "-O3")
             run.scene(variant + ", frm.dll", [wine, os.path.join(folder, "scene_shared.exe")], ["--threads", "2"], environment)
+            run.check([wine, os.path.join(folder, "threads.exe"), DATA, run.files()], environment)
             run.objects(folder, "x86_64-w64-mingw32-")
     finally:
         subprocess.run(["wineserver", "-k"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -273,7 +275,7 @@ def wasm(run):
     for name, flags in (("wasm", "-O3"), ("wasm-O0", "-O0"), ("wasm-simd128", "-O3 -msimd128")):
         folder = run.configure_and_build(name, options, flags, environment, launcher=False)
         run.scene(f"em++ {version_of(compiler)} {flags}, node", [*start, os.path.join(folder, "scene.js")])
-    run.check([*start, os.path.join(folder, "threadless.js"), DATA, run.files()])
+        run.check([*start, os.path.join(folder, "threads.js"), DATA, run.files()])
 
 
 GROUPS = {group.__name__: group for group in (here, debug, clang, optimised, older, arm64, windows, wasm)}
