@@ -1,6 +1,6 @@
-/* The library's own threads on another machine: a servo, the watchdog of an engaged device and a recorder's writer. Where
- * libfrm was built without threads (WebAssembly) the first two are refused and leave all as it was, and a recorder writes in
- * the thread that ticks. What was recorded replays to the same bits either way. Usage: threads DATA WORK */
+/* The library's own threads on another machine: a servo, the watchdog of an engaged device and a recorder's writer.
+ * Where libfrm was built without threads (WebAssembly) the first two are refused and leave all as it was, and a recorder
+ * writes in the thread that ticks. What was recorded replays to the same bits either way. Usage: threads DATA WORK */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
