@@ -24,7 +24,7 @@ struct Options {
     std::vector<std::string> maps;
     std::uint32_t index = 0, force_interval = 16;
     long rate = 1000, priority = 80;
-    double seconds = 0, force_scale = 1, deadline = 0.05;
+    double seconds = 0, force_scale = 1, torque_scale = -1, deadline = 0.05;
     Numbers anchor{};
     bool calibrate = false, engage = false, no_lock = false, json = false;
 };
@@ -89,7 +89,8 @@ public:
         session_.check(frm_servo_create(context, &def, &servo_));
         frm_servo_input input;
         frm_servo_input_init(&input, sizeof input);
-        input.force_scale = input.torque_scale = static_cast<float>(o.force_scale);
+        input.force_scale = static_cast<float>(o.force_scale);
+        input.torque_scale = static_cast<float>(o.torque_scale >= 0 ? o.torque_scale : o.force_scale);
         input.anchor.position = {o.anchor[0], o.anchor[1], o.anchor[2]};
         session_.check(frm_servo_set_input(servo_, &input), "--force-scale");
         if (o.engage) session_.check(frm_servo_engage(servo_));
@@ -227,7 +228,8 @@ void add_servo(CLI::App& app) {
     command->footer(
         "The body is the scene's one with a motion of type \"device\"; what --device names takes the place of\n"
         "the device there. It prints how punctual the servo was (docs/servo.md).\n"
-        "  frm servo samples/paddle_in_hand.json --map paddle=paddle.frm --device sim --calibrate --engage");
+        "  frm servo samples/paddle_in_hand.json --map paddle=paddle.frm --device sim --calibrate --engage \\\n"
+        "      --anchor 0,0,0.35 --torque-scale 0.003");
     command->add_option("SCENE", o.scene, "a scene file (JSON)")->required()->check(not_empty())->type_name("");
     command->add_option("--map", o.maps, "where a map of the scene is; may be repeated")
         ->expected(1)
@@ -255,6 +257,9 @@ void add_servo(CLI::App& app) {
         ->type_name("S");
     command->add_flag("--engage", o.engage, "let the device feel forces; without it they stay off");
     command->add_option("--force-scale", o.force_scale, "of what is felt, 0 to 1000; default 1")
+        ->check(number_within(0, 1000))
+        ->type_name("X");
+    command->add_option("--torque-scale", o.torque_scale, "of torques; default: that of --force-scale")
         ->check(number_within(0, 1000))
         ->type_name("X");
     command->add_option("--deadline", o.deadline, "s without an exchange after which an engaged device is stopped")

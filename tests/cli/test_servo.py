@@ -27,7 +27,8 @@ def test_one_device_is_needed(refused, scene):
 
 def test_arguments(refused, scene):
     path = scene(body=DEVICE)
-    for option, value in (("--rate", "99"), ("--rate", "6000"), ("--priority", "100"), ("--force-scale", "-1")):
+    for option, value in (("--rate", "99"), ("--rate", "6000"), ("--priority", "100"), ("--force-scale", "-1"),
+                          ("--torque-scale", "-1"), ("--deadline", "0"), ("--anchor", "1,2")):
         refused(2, option, "servo", path, option, value)
 
 
@@ -50,7 +51,9 @@ def test_a_simulated_device_is_recorded_and_replayed(good, scene, tmp_path):
     for arguments in ((again,), (scene(body=DEVICE), "--device", f"replay:{recording}")):
         ended = good("servo", *arguments, "--anchor", "0,0,-0.1", "--seconds", "60", "--record", tmp_path / "again.frmrec",
                      "--json").json
-        assert ended["ticks"] == result["ticks"] and good("replay", tmp_path / "again.frmrec", "--json").json["identical"]
+        assert ended["status"] == "FRM_ERROR_END"
+        replayed = good("replay", tmp_path / "again.frmrec", "--json").json
+        assert replayed["identical"] and replayed["ticks"] == result["ticks"]
 
 
 def test_a_device_that_is_not_calibrated_gives_no_force(frm, scene, tmp_path):
