@@ -73,6 +73,15 @@ def test_devices_are_refused(refused, scene, tmp_path):
     assert sorted(tmp_path.iterdir()) == before
 
 
+def test_a_device_for_real_time_is_not_run(good, refused, scene, tmp_path):
+    sim = scene(body={"motion": {"type": "device", "device": "sim"}})
+    refused(1, "bodies[0]|sim|frm servo", "run", sim)
+    good("device", "record", "sim", "--calibrate", "--rate", "500", "--seconds", "0.5", "-o", tmp_path / "s.frmrec")
+    again = {"type": "device", "device": f"replay:{tmp_path / 's.frmrec'}"}
+    assert good("run", scene("again.json", seconds=0.2, body={"motion": again}), "--json").json["ticks"] == 100
+    refused(1, "read by this command", "run", tmp_path / "again.json", "--record", tmp_path / "s.frmrec")
+
+
 def test_another_period(good, scene, tmp_path):
     device = json.loads((ROOT / "samples" / "devices" / "SpidarG6X3R.json").read_text())
     device["period"] = 0.002
