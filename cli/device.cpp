@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -20,7 +21,7 @@ struct Options {
     std::uint32_t index = 0;
     double rate = 10, seconds = 0;
     std::uint32_t force_interval = 16;
-    bool json = false;
+    bool calibrate = false, json = false;
 };
 
 nlohmann::ordered_json json_of_device(const frm_device_info& info) {
@@ -34,8 +35,15 @@ nlohmann::ordered_json json_of_device(const frm_device_info& info) {
 void list(const Options& o) {
     const Session session;
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    const auto add = [&](const std::string& name) {
-        const std::vector<frm_device_info> found = list_devices(session, name);
+    // Of all drivers, one that cannot be asked says why, and the others are listed.
+    const auto add = [&](const std::string& name, bool alone) {
+        std::vector<frm_device_info> found;
+        try {
+            found = list_devices(session, name);
+        } catch (const Failure& failure) {
+            if (alone) throw;
+            return print_note(name + ": " + failure.what());
+        }
         for (std::size_t i = 0; i < found.size(); ++i) {
             all.push_back({{"device", name}, {"index", i}});
             all.back().update(json_of_device(found[i]));
@@ -46,13 +54,13 @@ void list(const Options& o) {
         }
         if (found.empty() && !o.json) std::printf("%s: no device\n", name.c_str());
     };
-    if (!o.device.empty()) add(o.device);
+    if (!o.device.empty()) add(o.device, true);
     for (const DeviceSource& source : device_sources()) {
         if (!o.device.empty()) break;
-        if (!*source.argument)
-            add(source.name);
+        if (!*source.argument || *source.argument == '[')
+            add(source.name, false);
         else if (!o.json)
-            std::printf("%s%s%s: %s\n", source.name, *source.argument == '[' ? "" : ":", source.argument, source.what);
+            std::printf("%s:%s: %s\n", source.name, source.argument, source.what);
     }
     if (o.json) std::printf("%s\n", nlohmann::ordered_json{{"devices", all}}.dump(2).c_str());
 }
@@ -78,6 +86,16 @@ private:
     std::uint64_t late_ = 0;
 };
 
+/// The bits of a device's faults by name.
+std::vector<std::string> fault_names(std::uint32_t faults) {
+    static const char* const names[] = {"uncalibrated", "short packet",  "timeout",      "transfer",      "unplugged",
+                                        "lost count",   "stuck encoder", "slack string", "broken string", "deadline"};
+    std::vector<std::string> out;
+    for (std::size_t bit = 0; bit < 32; ++bit)
+        if (faults >> bit & 1u) out.push_back(bit < std::size(names) ? names[bit] : "bit " + std::to_string(bit));
+    return out;
+}
+
 const char* status_name(std::uint32_t status) {
     return status == FRM_DEVICE_READY ? "ready" : status == FRM_DEVICE_UNCALIBRATED ? "uncalibrated" : "fault";
 }
@@ -102,18 +120,23 @@ void print(const Options& o, const frm_device_state& s) {
             {"linear", json_of(s.twist.linear)},
             {"angular", json_of(s.twist.angular)},
             {"grip", s.grip},
-            {"buttons", s.buttons}};
+            {"buttons", s.buttons},
+            {"faults", fault_names(s.faults)}};
         std::printf("%s\n", j.dump().c_str());
     } else {
+        // That it is not calibrated is its status.
+        std::string text;
+        for (const std::string& name : fault_names(s.faults & ~std::uint32_t{FRM_DEVICE_FAULT_UNCALIBRATED}))
+            text += (text.empty() ? "  " : ", ") + name;
         std::printf(
             "%8llu  %-12s  position %8.4f %8.4f %8.4f m  rotation %7.4f %7.4f %7.4f %7.4f  speed %.3f m/s  "
-            "grip %.2f  buttons %x\n",
+            "grip %.2f  buttons %x%s\n",
             static_cast<unsigned long long>(s.sequence), status_name(s.status), s.pose.position.x, s.pose.position.y,
             s.pose.position.z, static_cast<double>(s.pose.rotation.x), static_cast<double>(s.pose.rotation.y),
             static_cast<double>(s.pose.rotation.z), static_cast<double>(s.pose.rotation.w),
             std::sqrt(static_cast<double>(s.twist.linear.x * s.twist.linear.x + s.twist.linear.y * s.twist.linear.y +
                                           s.twist.linear.z * s.twist.linear.z)),
-            static_cast<double>(s.grip), s.buttons);
+            static_cast<double>(s.grip), s.buttons, text.c_str());
     }
     std::fflush(stdout);
 }
@@ -123,9 +146,15 @@ std::uint64_t cycles_of(const Options& o) {
                          : ~std::uint64_t{0};
 }
 
+frm_device open(const Session& session, const Options& o) {
+    const frm_device device = open_device(session, o.device, o.index);
+    if (o.calibrate) session.check(frm_device_calibrate(device), o.device);
+    return device;
+}
+
 void monitor(const Options& o) {
     const Session session;
-    const frm_device device = open_device(session, o.device, o.index);
+    const frm_device device = open(session, o);
     const ProgressBar signals("monitor");  // Ctrl-C ends it in good order
     Pace pace(o.rate);
     frm_device_state state{};
@@ -179,9 +208,9 @@ private:
 };
 
 void record(const Options& o) {
-    require_distinct({o.output}, {o.device.substr(o.device.find(':') + 1)});
+    require_other_file(o.output, o.device);
     const Session session;
-    const frm_device device = open_device(session, o.device, o.index);
+    const frm_device device = open(session, o);
     require_writable(o.output);
     Recording recording(session, o.output, o.force_interval);
     session.check(frm_recorder_add_device(recording.recorder, device));
@@ -228,7 +257,7 @@ CLI::App* add(CLI::App& parent, const char* name, const char* what, const std::s
 }
 
 void add_device_options(CLI::App& command, Options& o) {
-    command.add_option("DEVICE", o.device, "a name from frm device list: null, replay:FILE")
+    command.add_option("DEVICE", o.device, "a name from frm device list: null, replay:FILE, sim, spidar")
         ->required()
         ->check(not_empty())
         ->type_name("");
@@ -236,6 +265,7 @@ void add_device_options(CLI::App& command, Options& o) {
 }
 
 void add_rate(CLI::App& command, Options& o, double rate) {
+    command.add_flag("--calibrate", o.calibrate, "the grip is at its reference pose now");
     o.rate = rate;
     command.add_option("--rate", o.rate, "exchanges a second")
         ->check(number_within(10, 10000))
@@ -255,7 +285,9 @@ void add_device(CLI::App& app) {
 
     auto o = make();
     CLI::App* one = add(*command, "list", "Lists the devices of the drivers that are built in.", o, list);
-    one->add_option("DEVICE", o->device, "of this driver alone: null, replay:FILE")->check(not_empty())->type_name("");
+    one->add_option("DEVICE", o->device, "of this driver alone: null, replay:FILE, sim, spidar")
+        ->check(not_empty())
+        ->type_name("");
 
     o = make();
     one = add(*command, "monitor", "Shows where the grip is, without any force; --json: a line of JSON each.", o,
@@ -264,7 +296,10 @@ void add_device(CLI::App& app) {
     add_rate(*one, *o, 10);
 
     o = make();
-    one = add(*command, "calibrate", "Tells the device that its grip is at the reference pose now.", o, calibrate);
+    one = add(*command, "calibrate",
+              "Tries whether a device can be calibrated: its grip is at the reference pose now. SPIDAR-G\n"
+              "forgets it when it is closed; give --calibrate to the command that uses it.",
+              o, calibrate);
     add_device_options(*one, *o);
 
     o = make();

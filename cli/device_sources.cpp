@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "cli/command.h"
+#include "cli/file.h"
 
 namespace frm::cli {
 namespace {
@@ -131,6 +132,17 @@ std::vector<frm_device_info> list_devices(const Session& session, const std::str
 frm_device open_device(const Session& session, const std::string& name, std::uint32_t index) {
     const auto [source, argument] = find(name);
     return source->open(session, argument, index);
+}
+
+bool is_device_name(const std::string& text) {
+    const std::string before = text.substr(0, text.find(':'));
+    return std::any_of(device_sources().begin(), device_sources().end(),
+                       [&](const DeviceSource& source) { return before == source.name; });
+}
+
+void require_other_file(const std::string& output, const std::string& name) {
+    const std::size_t colon = name.find(':');
+    if (colon != std::string::npos) require_distinct({output}, {name.substr(colon + 1)});
 }
 
 }  // namespace frm::cli

@@ -23,4 +23,9 @@ const std::vector<DeviceSource>& device_sources();
 std::vector<frm_device_info> list_devices(const Session& session, const std::string& name);
 frm_device open_device(const Session& session, const std::string& name, std::uint32_t index);
 
+/// Whether the text before the colon, or all of it, is a driver's name.
+bool is_device_name(const std::string& text);
+/// Throws Failure if `output` is the file that the name names.
+void require_other_file(const std::string& output, const std::string& name);
+
 }  // namespace frm::cli

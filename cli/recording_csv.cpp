@@ -62,15 +62,9 @@ std::string tick_head() {
     return head + "\n";
 }
 
-constexpr std::size_t more_words = (sizeof(frm_device_state) - device::named_state_bytes) / 4;
-
 std::string exchange_head() {
-    std::string head = "tick,time,device" + wrench_columns("command_") + ",status," + motion_columns +
-                       ",grip,buttons,time_ns,sequence";
-    if (more_words >= device::achieved_words) head += wrench_columns("achieved_");
-    for (std::size_t i = device::achieved_words; i < more_words; ++i)
-        head += i == device::achieved_words ? ",faults" : ",word" + std::to_string(i);
-    return head + ",raw\n";
+    return "tick,time,device" + wrench_columns("command_") + ",status," + motion_columns +
+           ",grip,buttons,time_ns,sequence" + wrench_columns("achieved_") + ",faults,raw\n";
 }
 
 struct KnownBody {
@@ -151,19 +145,11 @@ private:
         const frm_device_state& s = e.state;
         row.whole(s.status), row.pose(s.pose), row.vector(s.twist.linear), row.vector(s.twist.angular);
         row.number(s.grip), row.whole(s.buttons), row.whole(s.time_ns), row.whole(s.sequence);
-        const auto* const more = reinterpret_cast<const unsigned char*>(&s) + device::named_state_bytes;
-        for (std::size_t i = 0; i < more_words; ++i) {
-            float value;
-            std::uint32_t word;
-            std::memcpy(&value, more + 4 * i, 4);
-            std::memcpy(&word, more + 4 * i, 4);
-            if (i >= device::achieved_words)
-                row.whole(word);
-            else if (e.has_wrenches)
-                row.number(value);
-            else
-                row.empty(1);
-        }
+        if (e.has_wrenches)
+            row.vector(s.achieved.force), row.vector(s.achieved.torque);
+        else
+            row.empty(6);
+        row.whole(s.faults);
         std::string hex;
         for (const std::uint8_t byte : e.raw) {
             char two[3];

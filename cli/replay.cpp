@@ -140,8 +140,9 @@ void run(const Options& o) {
     } else if (first.diverged) {
         std::printf("%s: %s\n", o.file.c_str(), text_of(first).c_str());
     } else {
-        std::printf("%s: %llu ticks (%.4g s), %s%s%s\n", o.file.c_str(), static_cast<unsigned long long>(compared),
-                    info.time, exact ? "identical bit for bit" : "within the tolerance",
+        const std::string of = compared < info.ticks ? " of " + std::to_string(info.ticks) : "";
+        std::printf("%s: %llu%s ticks (%.4g s), %s%s%s\n", o.file.c_str(), static_cast<unsigned long long>(compared),
+                    of.c_str(), info.time, exact ? "identical bit for bit" : "within the tolerance",
                     info.torn ? "; the recording was cut off there" : "",
                     info.lost_events ? "; there events were lost when it was made" : "");
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/device_sources.h"
 #include "cli/file.h"
 #include "cli/frm_object.h"
 #include "cli/progress.h"
@@ -40,6 +41,12 @@ double size(const frm_vec3& v) {
                      static_cast<double>(v.z) * static_cast<double>(v.z));
 }
 
+/// The path in a scene's device: a recording may be named alone, or as frm device list does.
+std::string recording_of(const std::string& device) {
+    const std::string prefix = "replay:";
+    return device.compare(0, prefix.size(), prefix) == 0 ? device.substr(prefix.size()) : device;
+}
+
 /// The scene in the library: worlds, bodies, devices, recorder; and one tick after another. A recording that is not
 /// closed by close() leaves nothing.
 class Run {
@@ -62,11 +69,16 @@ public:
             def.map = maps.at(body.map);
             session_.check(frm_body_create(world_, &def, &running.body), body.where);
             const std::string& device = body.motion.device();
-            if (device == "null")
+            if (device == "null") {
                 session_.check(frm_device_open_null(context, &running.device));
-            else if (!device.empty())
-                session_.check(frm_device_open_replay(context, device.c_str(), 0, &running.device),
+            } else if (!device.empty()) {
+                const std::string file = recording_of(device);
+                if (file == device && is_device_name(device))
+                    throw Failure(body.where + ".motion.device: " + device +
+                                  " is a device for real time: play the scene with frm servo");
+                session_.check(frm_device_open_replay(context, file.c_str(), 0, &running.device),
                                body.where + ".motion.device");
+            }
             bodies_.push_back(running);
         }
     }
@@ -214,7 +226,7 @@ void require_outputs(const Scene& scene, const Options& o, const std::string& re
     for (const char* name : {"/run.json", "/report.html"})
         if (!o.report.empty()) outputs.push_back(o.report + name);
     for (const auto& [name, path] : scene.maps) inputs.push_back(path);
-    for (const SceneBody& body : scene.bodies) inputs.push_back(body.motion.device());
+    for (const SceneBody& body : scene.bodies) inputs.push_back(recording_of(body.motion.device()));
     require_distinct(outputs, inputs);
     if (!o.csv.empty()) require_writable(o.csv);
     if (!o.record.empty()) require_writable(o.record);

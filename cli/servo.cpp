@@ -6,8 +6,12 @@
 #include <map>
 #include <memory>
 #include <thread>
+#include <utility>
 
+#include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/device_sources.h"
+#include "cli/file.h"
 #include "cli/frm_object.h"
 #include "cli/progress.h"
 #include "cli/scene.h"
@@ -16,11 +20,13 @@ namespace frm::cli {
 namespace {
 
 struct Options {
-    std::string scene;
+    std::string scene, device, record;
     std::vector<std::string> maps;
+    std::uint32_t index = 0, force_interval = 16;
     long rate = 1000, priority = 80;
-    double seconds = 0, force_scale = 1;
-    bool engage = false, no_lock = false, json = false;
+    double seconds = 0, force_scale = 1, torque_scale = -1, deadline = 0.05;
+    Numbers anchor{};
+    bool calibrate = false, engage = false, no_lock = false, json = false;
 };
 
 /// The scene's one body that a device moves; the others stay where they are.
@@ -38,7 +44,7 @@ const SceneBody& held_body(const Scene& scene) {
 /// The library's objects of one run.
 class ServoRun {
 public:
-    ServoRun(const Scene& scene, const Options& o) {
+    ServoRun(const Scene& scene, const Options& o) : record_(o.record) {
         const frm_context context = session_.context();
         const SceneBody& held = held_body(scene);
         frm_world world = 0;
@@ -58,25 +64,50 @@ public:
             session_.check(frm_body_create(world, &body_def, &made), body.where);
             if (&body == &held) def.body = made;
         }
-        const std::string& device = held.motion.device();
-        if (device == "null")
-            session_.check(frm_device_open_null(context, &def.device));
-        else
-            session_.check(frm_device_open_replay(context, device.c_str(), 0, &def.device),
-                           held.where + ".motion.device");
+        const std::string name = device_name(held, o);
+        def.device = open_device(session_, name, o.index);
+        frm_device_safety_def safety;
+        session_.check(frm_device_safety_def_init(&safety, sizeof safety));
+        safety.deadline_ns = static_cast<std::uint64_t>(std::llround(1e9 * o.deadline));
+        session_.check(frm_device_set_safety(def.device, &safety), "--deadline");
+        if (o.calibrate) session_.check(frm_device_calibrate(def.device), name);
+        require_same_period(name, def.device, o.rate);
+        if (!o.record.empty()) {
+            require_distinct({o.record}, {scene.path});
+            for (const auto& map : scene.maps) require_distinct({o.record}, {map.second});
+            require_other_file(o.record, name);
+            require_writable(o.record);
+            frm_recorder_def recorder_def;
+            session_.check(frm_recorder_def_init(&recorder_def, sizeof recorder_def));
+            recorder_def.force_interval = o.force_interval;
+            session_.check(frm_recorder_create(world, o.record.c_str(), &recorder_def, &recorder_));
+            session_.check(frm_recorder_add_device(recorder_, def.device));
+        }
         def.rate = static_cast<std::uint32_t>(o.rate);
         def.priority = static_cast<std::uint32_t>(o.priority);
         def.lock_memory = !o.no_lock;
         session_.check(frm_servo_create(context, &def, &servo_));
         frm_servo_input input;
         frm_servo_input_init(&input, sizeof input);
-        input.force_scale = input.torque_scale = static_cast<float>(o.force_scale);
+        input.force_scale = static_cast<float>(o.force_scale);
+        input.torque_scale = static_cast<float>(o.torque_scale >= 0 ? o.torque_scale : o.force_scale);
+        input.anchor.position = {o.anchor[0], o.anchor[1], o.anchor[2]};
         session_.check(frm_servo_set_input(servo_, &input), "--force-scale");
         if (o.engage) session_.check(frm_servo_engage(servo_));
     }
 
+    ~ServoRun() {
+        // A recording that is not finished leaves nothing.
+        if (recorder_) std::remove((record_ + ".part").c_str());
+    }
+    ServoRun(const ServoRun&) = delete;
+    ServoRun& operator=(const ServoRun&) = delete;
+
     void start() { session_.check(frm_servo_start(servo_)); }
     void stop() { session_.check(frm_servo_stop(servo_)); }
+    void close_recording() {
+        if (recorder_) session_.check(frm_recorder_close(std::exchange(recorder_, 0)));
+    }
 
     frm_servo_state state() const {
         frm_servo_state state{};
@@ -99,8 +130,27 @@ public:
     }
 
 private:
+    /// A name as `frm device list` has it; a scene may name a recording alone.
+    static std::string device_name(const SceneBody& held, const Options& o) {
+        const std::string& name = o.device.empty() ? held.motion.device() : o.device;
+        return !o.device.empty() || is_device_name(name) ? name : "replay:" + name;
+    }
+    /// A simulated device moves on by its own period in every tick, however long that is.
+    void require_same_period(const std::string& name, frm_device device, long rate) const {
+        if (name.substr(0, name.find(':')) != "sim") return;
+        frm_device_info info{};
+        info.struct_size = sizeof info;
+        session_.check(frm_device_get_info(device, &info));
+        const double period = 1e-9 * static_cast<double>(info.period_ns);
+        if (std::fabs(period * static_cast<double>(rate) - 1) > 1e-6)
+            throw Failure("--rate " + std::to_string(rate) + ": " + name + " lives " + std::to_string(1e3 * period) +
+                          " ms in each tick: set \"period\" of its configuration to 1 / rate");
+    }
+
     Session session_;
     frm_servo servo_ = 0;
+    frm_recorder recorder_ = 0;
+    std::string record_;
 };
 
 nlohmann::ordered_json summary(const Scene& scene, const ServoRun& run) {
@@ -156,6 +206,7 @@ void run(const Options& o) {
         std::this_thread::sleep_for(std::chrono::duration<double>(std::min(0.05, seconds - now)));
     }
     run.stop();
+    run.close_recording();
     const nlohmann::ordered_json result = summary(scene, run);
     if (o.json)
         std::printf("%s\n", result.dump(2).c_str());
@@ -175,14 +226,29 @@ void add_servo(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("servo", "Runs a scene in real time: a device moves its body, and feels what that feels.");
     command->footer(
-        "The body is the scene's one with a motion of type \"device\". It prints how punctual the servo was\n"
-        "(docs/servo.md).\n"
-        "  frm servo scene.json --map paddle=paddle.frm --rate 1000 --seconds 10");
+        "The body is the scene's one with a motion of type \"device\"; what --device names takes the place of\n"
+        "the device there. It prints how punctual the servo was (docs/servo.md).\n"
+        "  frm servo samples/paddle_in_hand.json --map paddle=paddle.frm --device sim --calibrate --engage \\\n"
+        "      --anchor 0,0,0.35 --torque-scale 0.003");
     command->add_option("SCENE", o.scene, "a scene file (JSON)")->required()->check(not_empty())->type_name("");
     command->add_option("--map", o.maps, "where a map of the scene is; may be repeated")
         ->expected(1)
         ->take_all()
         ->type_name("NAME=FILE");
+    command->add_option("--device", o.device, "a name from frm device list: null, replay:FILE, sim, spidar")
+        ->check(not_empty())
+        ->type_name("NAME");
+    command->add_option("--index", o.index, "which of the driver's devices")->capture_default_str()->type_name("N");
+    add_vector(*command, "--anchor", o.anchor, 1e3, "where the grip's origin is in the world, m (default: 0,0,0)");
+    command->add_flag("--calibrate", o.calibrate, "the grip is at its reference pose now (SPIDAR-G: needed each time)");
+    command->add_option("--record", o.record, "write a recording, with the device's packets")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command
+        ->add_option("--force-interval", o.force_interval, "of the recording: ticks between two whose forces are kept")
+        ->check(whole_within(1, 1000000))
+        ->capture_default_str()
+        ->type_name("N");
     command->add_option("--rate", o.rate, "ticks a second, 100 to 5000; default 1000")
         ->check(whole_within(100, 5000))
         ->type_name("HZ");
@@ -193,6 +259,13 @@ void add_servo(CLI::App& app) {
     command->add_option("--force-scale", o.force_scale, "of what is felt, 0 to 1000; default 1")
         ->check(number_within(0, 1000))
         ->type_name("X");
+    command->add_option("--torque-scale", o.torque_scale, "of torques; default: that of --force-scale")
+        ->check(number_within(0, 1000))
+        ->type_name("X");
+    command->add_option("--deadline", o.deadline, "s without an exchange after which an engaged device is stopped")
+        ->check(number_within(1e-3, 10))
+        ->capture_default_str()
+        ->type_name("S");
     command->add_option("--priority", o.priority, "real-time priority, 1 to 99; 0: none; default 80")
         ->check(whole_within(0, 99))
         ->type_name("N");

@@ -123,6 +123,7 @@ frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_device_comm
 frm_status FRM_CALL frm_device_get_raw(frm_device device, uint8_t* data, uint32_t capacity, uint32_t* size) {
     return with<Device>(device, [&](Context&, Device& object) {
         require_pointer(size, "size");
+        device::require_not_served(object);
         std::uint8_t packet[device::largest_packet];
         const auto length = static_cast<std::uint32_t>(object.raw(packet, sizeof packet));
         *size = length;

@@ -178,6 +178,11 @@ frm_device_state Device::exchange(const api::Axes& axes, const frm_device_comman
 }
 
 std::size_t Device::raw(std::uint8_t* data, std::size_t capacity) {
+    const Busy busy(busy_);
+    return raw_within_exchange(data, capacity);
+}
+
+std::size_t Device::raw_within_exchange(std::uint8_t* data, std::size_t capacity) {
     if (!driver_.raw) return 0;
     std::uint32_t size = 0;
     const auto most = static_cast<std::uint32_t>(std::min<std::size_t>(capacity, largest_packet));

@@ -25,6 +25,8 @@ public:
     void stop();
     /// The packet of the last exchange, at most `capacity` bytes of it; its size. 0: the driver gives none.
     std::size_t raw(std::uint8_t* data, std::size_t capacity);
+    /// The same for the recorder, which an exchange calls.
+    std::size_t raw_within_exchange(std::uint8_t* data, std::size_t capacity);
 
     void set_safety(const frm_device_safety_def& def);
     frm_device_safety_state safety() const;

@@ -221,7 +221,7 @@ void Recorder::exchanged(Device& device, const frm_device_command& command, cons
     const ExchangeHead head{device.recorded_as, has_wrenches, command.wrench, state};
     put(EventType::exchange, sizeof head + largest_packet, [&](std::uint8_t* to) {
         std::memcpy(to, &head, sizeof head);
-        return sizeof head + device.raw(to + sizeof head, largest_packet);
+        return sizeof head + device.raw_within_exchange(to + sizeof head, largest_packet);
     });
 }
 

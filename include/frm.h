@@ -698,7 +698,7 @@ FRM_API frm_status FRM_CALL frm_device_open_spidar_g(frm_context context, const 
                                                      frm_device *device);
 
 /* A simulated SPIDAR-G with strings, motors, encoders, its amplifier's packets and a hand that holds the grip: all of
- * the driver but the bus runs. Its clock is that of its exchanges, one period each, so a deadline never passes.
+ * the driver but the bus runs. Its clock is that of its exchanges, one period each, however far they lie apart.
  * [offline] */
 FRM_API frm_status FRM_CALL frm_device_open_simulated(frm_context context, const char *configuration,
                                                       frm_device *device);
@@ -722,7 +722,7 @@ FRM_API frm_status FRM_CALL frm_device_exchange(frm_device device, const frm_dev
 
 /* The packet that the last exchange read, as the driver gives it (at most 512 bytes), or as it was recorded: two-call
  * rule; *size receives its length, 0 where there is none; data may be null; `capacity` below the length:
- * FRM_ERROR_CAPACITY. [realtime] */
+ * FRM_ERROR_CAPACITY. FRM_ERROR_STATE while a servo runs the device. [realtime] */
 FRM_API frm_status FRM_CALL frm_device_get_raw(frm_device device, uint8_t *data, uint32_t capacity, uint32_t *size);
 
 /* Safe state at once; disengages. [realtime] */

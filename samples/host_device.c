@@ -61,8 +61,8 @@ static frm_status FRM_CALL mouse_exchange(void *user, void *instance, const frm_
     mouse *m = (mouse *)instance;
     const double last_x = m->x, last_y = m->y;
     (void)user;
-    m->felt = command->wrench;
     if (scanf("%lf %lf", &m->x, &m->y) != 2) return FRM_ERROR_END;
+    m->felt = command->wrench;
     state->status = FRM_DEVICE_READY;
     state->pose.position.x = m->x;
     state->pose.position.y = m->y;

@@ -176,6 +176,8 @@ bool Safety::observe(const frm_device_state& state) {
     std::uint32_t faults = state.faults;
     if (state.status == FRM_DEVICE_UNCALIBRATED) faults |= FRM_DEVICE_FAULT_UNCALIBRATED;
     if (state.status >= FRM_DEVICE_FAULT && faults == 0) faults |= FRM_DEVICE_FAULT_DRIVER;
+    // Before the first good state nothing was pushed that could have gone on for too long.
+    if (phase_ == Phase::waiting) faults &= ~static_cast<std::uint32_t>(FRM_DEVICE_FAULT_DEADLINE);
     ready_ = faults == 0;
     faults |= motion.faults;
     if (has_state_ && engaged() && dt_ > 0 && static_cast<double>(motion.dt) > 1e-9 * static_cast<double>(deadline_ns_))

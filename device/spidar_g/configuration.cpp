@@ -208,9 +208,9 @@ Configuration parse_configuration(const std::string& text, const std::string& wh
     }
     const Reader root(
         json, where,
-        {"format", "version", "name",     "lever",       "motors",          "amplifier",    "digits_per_volt",
-         "bus",    "vendor",  "product",  "button_mask", "report_bytes",    "report_start", "report_stop",
-         "period", "timeout", "deadline", "ramp",        "velocity_window", "checks",       "hand"});
+        {"format", "version", "name",    "lever",           "motors",       "amplifier",    "digits_per_volt",
+         "bus",    "vendor",  "product", "button_mask",     "report_bytes", "report_start", "report_stop",
+         "period", "timeout", "ramp",    "velocity_window", "checks",       "hand"});
     if (!root.has("format") || json["format"] != "frm-spidar-g")
         throw Error(FRM_ERROR_CORRUPT, "%s.format must be \"frm-spidar-g\"", where.c_str());
     std::uint32_t version = 0;
@@ -226,13 +226,11 @@ Configuration parse_configuration(const std::string& text, const std::string& wh
     root.number("digits_per_volt", out.digits_per_volt, 1, 1e5);
     read_bus(root, out);
     root.integer("button_mask", out.button_mask, 0, 65535);
-    double period = 0.001, timeout = 0.010, deadline = 0.020;
+    double period = 0.001, timeout = 0.010;
     root.number("period", period, 1e-4, 0.1);
     root.number("timeout", timeout, 1e-3, 1);
-    root.number("deadline", deadline, 2e-3, 10);
     out.period_ns = static_cast<std::uint64_t>(period * 1e9 + 0.5);
     out.timeout_ns = static_cast<std::uint64_t>(timeout * 1e9 + 0.5);
-    out.deadline_ns = static_cast<std::uint64_t>(deadline * 1e9 + 0.5);
     root.number("ramp", out.ramp, 0, 60);
     root.integer("velocity_window", out.velocity_window, 2, 64);
     if (root.has("checks")) {

@@ -47,10 +47,9 @@ struct Configuration {
     std::uint32_t report_bytes = 64;                      ///< of HID
     std::vector<std::uint8_t> report_start, report_stop;  ///< HID: sent once on opening, on closing
     std::uint64_t period_ns = 1'000'000;
-    std::uint64_t timeout_ns = 10'000'000;   ///< for one exchange
-    std::uint64_t deadline_ns = 20'000'000;  ///< if a command names none
-    double ramp = 0.5;                       ///< s from no force to all of it
-    std::uint32_t velocity_window = 8;       ///< poses
+    std::uint64_t timeout_ns = 10'000'000;  ///< for one exchange
+    double ramp = 0.5;                      ///< s from no force to all of it
+    std::uint32_t velocity_window = 8;      ///< poses
     Checks checks;
     Hand hand;
     WrenchRange range;  ///< at the reference pose

@@ -122,7 +122,9 @@ frm_status FRM_CALL open(void* user, std::uint32_t, void** instance) {
     const Configuration c = load_configuration(source.configuration);
     std::unique_ptr<SpidarG> device;
     if (source.simulated) {
-        device = std::make_unique<SpidarG>(c, std::make_unique<simulated::SimulatedTransport>(c));
+        auto transport = std::make_unique<simulated::SimulatedTransport>(c);
+        if (source.simulation) *source.simulation = transport.get();
+        device = std::make_unique<SpidarG>(c, std::move(transport));
         device->begin();
     } else {
         device = find_one(c, source.rotary);
@@ -150,8 +152,7 @@ frm_status FRM_CALL calibrate(void*, void* instance) {
 
 frm_status FRM_CALL exchange(void*, void* instance, const frm_device_command* command, frm_device_state* state) {
     Instance& i = of(instance);
-    if (i.watchdog)
-        i.watchdog->exchanged(command->deadline_ns ? command->deadline_ns : i.device->configuration().deadline_ns);
+    if (i.watchdog) i.watchdog->exchanged(command->deadline_ns);
     const std::lock_guard<std::mutex> lock(i.mutex);
     const GripState grip = i.device->exchange(i.frames.wrench_in(command->wrench));
     state->pose = i.frames.pose_out(grip.pose);

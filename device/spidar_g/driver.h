@@ -6,6 +6,10 @@
 #include "core/api/axes.h"
 #include "device/spidar_g/spidar_g.h"
 
+namespace frm::simulated {
+class SimulatedTransport;
+}
+
 namespace frm::spidar_g {
 
 /// What `user` points to while a device is opened; the instance keeps nothing of it.
@@ -14,6 +18,7 @@ struct Source {
     std::int32_t rotary;        ///< -1: any
     std::uint32_t axes;
     bool simulated;
+    simulated::SimulatedTransport** simulation = nullptr;  ///< receives what is behind a simulated device; may be null
 };
 
 const frm_device_driver& driver();

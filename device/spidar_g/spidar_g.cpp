@@ -211,6 +211,7 @@ bool SpidarG::calibrate() {
     broken_ = 0;
     state_ = {};
     state_.faults = 0;
+    deadline_passed_ = 0;
     ramp_ = 0;
     solver_.reset();
     filter_.reset();

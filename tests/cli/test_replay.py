@@ -69,7 +69,7 @@ def test_a_difference_is_named(frm):
 
 def test_devices_are_listed_watched_and_recorded(good, refused, tmp_path):
     listed = good("device", "list", "--json").json["devices"]
-    assert [d["device"] for d in listed] == ["null"]
+    assert [d["device"] for d in listed[:2]] == ["null", "sim"]  # and each SPIDAR-G that is there
     j = good("device", "record", "null", "--rate", "2000", "--seconds", "0.05", "-o", tmp_path / "n.frmrec", "--json").json
     assert j["cycles"] == 100 and j["lost_events"] == 0 and names(tmp_path) == ["n.frmrec"]
     assert good("replay", tmp_path / "n.frmrec", "--json").json["ticks"] == 100

@@ -359,6 +359,18 @@ TEST_CASE("safety: engaging what is not ready", "[safety]") {
     rig.check_latched_and_restart(FRM_DEVICE_FAULT_UNCALIBRATED, "calibrat");
 }
 
+TEST_CASE("safety: a deadline that passed before engaging is none", "[safety]") {
+    // A driver with a watchdog of its own says with the first exchange after a pause that it rested.
+    Rig rig;
+    REQUIRE(frm_device_engage(rig.device) == FRM_OK);
+    rig.hand.faults = FRM_DEVICE_FAULT_DEADLINE;
+    rig.exchange({0, 5, 0});
+    CHECK(rig.safety().faults == 0);
+    CHECK(rig.safety().engaged == 1);
+    rig.run(10, {0, 5, 0});
+    CHECK(rig.faulty(FRM_DEVICE_FAULT_DEADLINE));  // but from then on it is
+}
+
 TEST_CASE("safety: the dead man's grip and buttons", "[safety]") {
     Rig rig;
     rig.def.dead_man_grip = 0.5f;

@@ -122,6 +122,8 @@ TEST_CASE("a servo closes the loop, and others read it meanwhile", "[servo]") {
     CHECK(scene.lib.error().find("servo") != std::string::npos);
     CHECK(frm_world_tick(scene.world, 0.001f) == FRM_ERROR_STATE);
     CHECK(frm_device_stop(scene.device) == FRM_ERROR_STATE);
+    std::uint32_t size = 0;
+    CHECK(frm_device_get_raw(scene.device, nullptr, 0, &size) == FRM_ERROR_STATE);
     done = true;
     one.join(), two.join();
     CHECK(wrong == 0);

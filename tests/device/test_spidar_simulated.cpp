@@ -293,6 +293,10 @@ TEST_CASE("a simulated device through the C interface, in every host's axes", "[
         REQUIRE(frm_device_exchange(device, &command, &state) == FRM_OK);
         CHECK(state.status == FRM_DEVICE_UNCALIBRATED);
         REQUIRE(frm_device_calibrate(device) == FRM_OK);
+        frm_device_safety_def safety;
+        REQUIRE(frm_device_safety_def_init(&safety, sizeof safety) == FRM_OK);
+        safety.deadline_ns = 10'000'000'000;  // a busy machine is no stalled host
+        REQUIRE(frm_device_set_safety(device, &safety) == FRM_OK);
         REQUIRE(frm_device_engage(device) == FRM_OK);
         command.wrench.force = {1, 2, 3};
         for (int k = 0; k < 3000; ++k) REQUIRE(frm_device_exchange(device, &command, &state) == FRM_OK);

@@ -621,6 +621,7 @@ def test_simulated_spidar_g(context):
         state = device.exchange()
         assert state.faults == frm.DEVICE_FAULT_UNCALIBRATED and state.status == frm.DEVICE_UNCALIBRATED
         device.calibrate()
+        device.set_safety(deadline_ns=10_000_000_000)
         device.engage()
         for _ in range(2500):
             state = device.exchange(((0, 0, 3), (0, 0, 0)))

@@ -289,6 +289,7 @@ static frm_status fill_simulated_state(void *state) {
 static void spidar_g(void) {
     frm_device device = 42;
     frm_device_info list[1], info = {sizeof info};
+    frm_device_safety_def safety;
     frm_device_state state = {sizeof state};
     frm_device_command command = {sizeof command};
     uint32_t count = 42, i;
@@ -318,7 +319,10 @@ static void spidar_g(void) {
     OK(frm_device_exchange(device, NULL, &state));
     CHECK(state.status == FRM_DEVICE_UNCALIBRATED && state.faults == FRM_DEVICE_FAULT_UNCALIBRATED);
     OK(frm_device_calibrate(device));
-    OK(frm_device_engage(device)); /* the whole force after a ramp of a second, which is a thousand exchanges */
+    OK(frm_device_safety_def_init(&safety, sizeof safety));
+    safety.deadline_ns = 10000000000u; /* a busy machine is no stalled host */
+    OK(frm_device_set_safety(device, &safety));
+    OK(frm_device_engage(device));
     command.wrench.force.y = 2.0f;
     for (i = 0; i < 1700; ++i) OK(frm_device_exchange(device, &command, &state));
     CHECK(state.status == FRM_DEVICE_READY && state.faults == 0);

@@ -163,14 +163,14 @@ static uint64_t record(frm_recorder *stale) {
 static void what_it_holds(frm_replay replay) {
     frm_replay_info info = {sizeof info};
     frm_map map = 0;
-    frm_map_info original = {sizeof original}, recorded = {sizeof recorded};
+    frm_map_info original = {sizeof original}, held = {sizeof held};
     OK(frm_replay_get_info(replay, &info));
     CHECK(info.torn == 0 && info.ticks == TICKS && info.bodies == 1 && info.devices == 1);
     CHECK(info.has_water == 1 && info.maps == 1 && info.time > 0.2999 && info.time < 0.3001);
     OK(frm_replay_get_map(replay, 0, &map));
     OK(frm_map_get_info(f.map, &original));
-    OK(frm_map_get_info(map, &recorded));
-    CHECK(original.content_hash == recorded.content_hash);
+    OK(frm_map_get_info(map, &held));
+    CHECK(original.content_hash == held.content_hash);
     map = 42;
     REFUSED(FRM_ERROR_ARGUMENT, "index", frm_replay_get_map(replay, 1, &map));
     REFUSED(FRM_ERROR_ARGUMENT, "map", frm_replay_get_map(replay, 0, NULL));
