@@ -300,12 +300,15 @@ void World::step_waves(const WaveTime& waves) {
     for (const auto& body : bodies_) {
         body->footprint->gather_pressure(most);
         if (body->footprint->pressed().empty()) continue;
-        const Forces& f = body->forces;
-        const Twist& twist = body->def.twist;
-        const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
-                            dot(f.pressure.torque + f.friction.torque, twist.angular);
-        const float share =
-            share_of_push(*body->footprint, field, step, static_cast<double>(power) * static_cast<double>(step));
+        float share = 1;  // the paper's rule takes Eq. 10 as it is
+        if (displaces) {
+            const Forces& f = body->forces;
+            const Twist& twist = body->def.twist;
+            const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
+                                dot(f.pressure.torque + f.friction.torque, twist.angular);
+            share =
+                share_of_push(*body->footprint, field, step, static_cast<double>(power) * static_cast<double>(step));
+        }
         pushes_.push_back(push_on_water(*body->footprint, push * share));
     }
     // Where the velocity inside a body is forced, that is before each step.
