@@ -356,7 +356,7 @@ private:
 }  // namespace
 
 TEST_CASE("worlds drawn by chance stay finite, within bounds and the same", "[stress]") {
-    Turns turns(14);
+    Turns turns(24);
     Folder folder;
     std::uint64_t seed = stress_seed();
     std::size_t worlds = 0, recorded = 0;
