@@ -102,6 +102,25 @@ Push push_on_water(Footprint& footprint, float factor) {
     return {footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), factor};
 }
 
+float share_of_push(const Footprint& footprint, const Field& water, float dt, double work) {
+    const Rect r = inside_water(footprint, water, footprint.pressed());
+    // dE = rho d sum of u . dt grad p / rho over the faces = -d dt sum of p div u over the cells.
+    double taken = 0;
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        const std::int32_t wi = footprint.i0(), wj = j + footprint.j0();
+        const float* p = footprint.pressure() + at(0, j, footprint.size());
+        const float *u = water.velocity_x_row(wj), *v = water.velocity_y_row(wj), *above = water.velocity_y_row(wj + 1);
+        double row = 0;
+        for (std::int32_t i = r.i0; i < r.i1; ++i)
+            row -= static_cast<double>(p[i] * (u[wi + i + 1] - u[wi + i] + above[wi + i] - v[wi + i]));
+        taken += row;
+    }
+    const FieldDef& def = water.def();
+    taken *= static_cast<double>(def.depth * def.cell) * static_cast<double>(dt);
+    const double most = std::max(work, 0.0);
+    return taken > most ? static_cast<float>(most / taken) : 1.0f;
+}
+
 void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps, float factor) {
     if (!footprint.active()) return;
     const std::int32_t n = footprint.size();

@@ -18,6 +18,10 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
 
 /// The push by the pressure on the body's upper side (Eq. 10), for each step; factor = dt / density.
 Push push_on_water(Footprint& footprint, float factor);
+/// The share of that push which the water takes: all of it, but no more energy in a step of `dt` than `work`, J, that the
+/// body's drag does on the water in it. The push follows from the velocity that the water has, so that a body would else
+/// drive the waves it meets, one at rest too.
+float share_of_push(const Footprint& footprint, const Field& water, float dt, double work);
 /// The same push, and the steps, of the body's own waves.
 void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps, float factor);
 

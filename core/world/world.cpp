@@ -299,7 +299,17 @@ void World::step_waves(const WaveTime& waves) {
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
     for (const auto& body : bodies_) {
         body->footprint->gather_pressure(most);
-        if (!body->footprint->pressed().empty()) pushes_.push_back(push_on_water(*body->footprint, push));
+        if (body->footprint->pressed().empty()) continue;
+        float share = 1;  // the paper's rule takes Eq. 10 as it is
+        if (displaces) {
+            const Forces& f = body->forces;
+            const Twist& twist = body->def.twist;
+            const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
+                                dot(f.pressure.torque + f.friction.torque, twist.angular);
+            share =
+                share_of_push(*body->footprint, field, step, static_cast<double>(power) * static_cast<double>(step));
+        }
+        pushes_.push_back(push_on_water(*body->footprint, push * share));
     }
     // Where the velocity inside a body is forced, that is before each step.
     for (std::uint32_t n = 0; n < (displaces ? 1 : waves.steps); ++n) {
@@ -309,8 +319,12 @@ void World::step_waves(const WaveTime& waves) {
                 force_velocity(*body->footprint, field, body->def.twist.linear, body->def.twist.angular,
                                body->wet_height);
         field.advance(step, gravity, steps, pushes_.data(), pushes_.size(), threads_);
-        if (own_waves)
-            for (const auto& body : bodies_) advance_own(*body->footprint, step, gravity, steps, push);
+        if (!own_waves) continue;
+        std::size_t next = water_->pressure() ? 1 : 0;
+        for (const auto& body : bodies_) {
+            const bool presses = !body->footprint->pressed().empty();
+            advance_own(*body->footprint, step, gravity, steps, presses ? pushes_[next++].factor : 0.0f);
+        }
     }
 }
 

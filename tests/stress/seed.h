@@ -42,19 +42,19 @@ private:
     std::uint64_t state_;
 };
 
-/// A test goes on for some seconds, and for a few turns on however slow a machine.
-class Patience {
+/// A test takes the same seeds on every machine, and more of them until FRM_STRESS_SECONDS are over, where that is set.
+class Turns {
 public:
-    Patience(double seconds, int least) : seconds_(seconds), least_(least) {}
+    explicit Turns(int seeds) : seeds_(seeds) {}
     bool more() {
+        if (turns_++ < seeds_) return true;
         const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - begin_;
-        return ++turns_ <= least_ || gone.count() < seconds_;
+        return gone.count() < static_cast<double>(setting("FRM_STRESS_SECONDS", 0));
     }
 
 private:
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-    double seconds_;
-    int least_, turns_ = 0;
+    int seeds_, turns_ = 0;
 };
 
 }  // namespace frm::test

@@ -167,11 +167,11 @@ TEST_CASE("a floating box in a closed basin drives no waves", "[stress]") {
 }
 
 TEST_CASE("a floating box left alone comes to rest and stays", "[stress]") {
-    Patience patience(static_cast<double>(setting("FRM_STRESS_SECONDS", 8)), 3);
+    Turns turns(18);
     const double rates[] = {60, 100, 250, 500, 1000};
     double fastest = 0;
     int boxes = 0;
-    for (std::uint64_t seed = stress_seed(); patience.more(); ++seed, ++boxes) {
+    for (std::uint64_t seed = stress_seed(); turns.more(); ++seed, ++boxes) {
         Random random(seed);
         Scene scene;
         scene.edge = random.range(0.1, 2);
@@ -195,9 +195,12 @@ TEST_CASE("a floating box left alone comes to rest and stays", "[stress]") {
         CHECK(out.energy[3] < 1.1 * out.energy[2]);
         CHECK(out.energy[3] < out.energy[0]);
         if (scene.border == Border::absorbing) {
-            // At rest: slower than a hundredth of a fall by its own edge, and where Archimedes has it.
+            // Where Archimedes has it, and as slow as its drag alone makes it, which dies out as 1 / t only. A draught near
+            // the whole 0.6 L pitches longest: torque rho L^5 / 64 w^2 (half of rho u^2 on its underside), inertia with
+            // added mass 0.093 rho L^5, so that the amplitude obeys dw/dt = -4 / (3 pi) 0.0156 / 0.093 w^2 = -0.071 w^2. At
+            // three quarters of the time, 112 sqrt(L / g), w L = 0.126 sqrt(g L), that is 0.089 of a fall by its own edge.
             const double slow = out.speed / std::sqrt(2 * 9.80665 * scene.edge);
-            CHECK(slow < 0.05);
+            CHECK(slow < 0.089);
             CHECK(std::fabs(out.height) < 0.02);
             fastest = std::max(fastest, slow);
         }
@@ -222,6 +225,34 @@ TEST_CASE("a light body is stable at 60 Hz with what the interface gives, and th
         CHECK(rests);
         CHECK(without > 3 * dive);
         CHECK_FALSE(rests_without);
+    }
+}
+
+TEST_CASE("a body held still in waves does not drive them", "[stress]") {
+    // Its push follows from the waves' own velocity: without a limit by its drag's work, the scene below ("millions of
+    // ticks") went up to 100 m within three hours of its time. Here the same body rests, and energy may only leave.
+    Random random(stress_seed());
+    for (int n = 0; n < 8; ++n) {
+        World world = world_of(WorldDef{});
+        Water& water = world.create_water(water_of(48, 0.025f, 0.4f, Border::reflecting, 0));
+        const auto map = std::make_shared<Map>(full_map(fine_box({0.2, 0.04, 0.3}, 0.06)));
+        const Vec3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        world.create_body(body_of(map, {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-0.15, 0)},
+                                  turned(axis, random.uniform(0, 3))));
+        std::vector<float> heights(48 * 48);
+        const double kx = 3.14159265 * (1 + random.below(4)) / 48, ky = 3.14159265 * random.below(4) / 48;
+        for (std::size_t i = 0; i < heights.size(); ++i)
+            heights[i] = static_cast<float>(0.1 * std::cos(kx * (static_cast<double>(i % 48) + 0.5)) *
+                                            std::cos(ky * (static_cast<double>(i / 48) + 0.5)));
+        world.set_height(heights.data());
+        double first = 0, last = 0;  // means over a second, some periods: a dry body's differ by 0.0014
+        for (int t = 0; t < 30000; ++t) {
+            REQUIRE(world.tick(0.002f));
+            if (t < 500) first += water_energy(water.field, WorldDef{}.fluid) / 500;
+            if (t >= 29500) last += water_energy(water.field, WorldDef{}.fluid) / 500;
+        }
+        INFO("motion " << n << ": " << first << " J, then " << last << " J");
+        CHECK(last < 1.005 * first);
     }
 }
 

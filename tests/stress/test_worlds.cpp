@@ -356,11 +356,11 @@ private:
 }  // namespace
 
 TEST_CASE("worlds drawn by chance stay finite, within bounds and the same", "[stress]") {
-    Patience patience(static_cast<double>(setting("FRM_STRESS_SECONDS", 8)), 6);
+    Turns turns(24);
     Folder folder;
     std::uint64_t seed = stress_seed();
     std::size_t worlds = 0, recorded = 0;
-    for (; patience.more(); ++seed, ++worlds) {
+    for (; turns.more(); ++seed, ++worlds) {
         INFO("FRM_STRESS_SEED=" << seed << " draws this world first");
         const bool record = worlds % 4 == 1;
         const std::string path = record ? folder.file("world.frmrec") : std::string();
