@@ -87,3 +87,23 @@ static void add_change_row(float* __restrict h, const float* __restrict now, con
                            std::ptrdiff_t count) {
     for (std::ptrdiff_t i = 0; i < count; ++i) h[i] += now[i] - before[i];
 }
+
+/// Sum of p times the divergence (u[i + 1] - u[i] + v[i + stride] - v[i]) over a rectangle: in sixteen lanes, then by a
+/// tree.
+static float pressed_divergence(const float* p, std::ptrdiff_t columns, const float* u, const float* v,
+                                std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count) {
+    constexpr std::ptrdiff_t lanes = kernel_lanes;
+    float sum[lanes] = {};
+    for (std::ptrdiff_t j = 0; j < rows; ++j, p += columns, u += stride, v += stride) {
+        const float* const above = v + stride;
+        std::ptrdiff_t i = 0;
+        for (; i + lanes <= count; i += lanes)
+            for (std::ptrdiff_t k = 0; k < lanes; ++k)
+                sum[k] += p[i + k] * ((u[i + k + 1] - u[i + k]) + (above[i + k] - v[i + k]));
+        for (std::ptrdiff_t k = 0; i + k < count; ++k)
+            sum[k] += p[i + k] * ((u[i + k + 1] - u[i + k]) + (above[i + k] - v[i + k]));
+    }
+    for (std::ptrdiff_t width = lanes / 2; width > 0; width /= 2)
+        for (std::ptrdiff_t k = 0; k < width; ++k) sum[k] += sum[k + width];
+    return sum[0];
+}

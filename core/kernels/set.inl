@@ -54,6 +54,7 @@ const Kernels kernels{
     slice_elements,
     refine,
     add_change_row,
+    pressed_divergence,
     look_up_block,
 };
 }  // namespace frm::FRM_KERNEL_SET

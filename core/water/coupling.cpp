@@ -105,16 +105,11 @@ Push push_on_water(Footprint& footprint, float factor) {
 float share_of_push(const Footprint& footprint, const Field& water, float dt, double work) {
     const Rect r = inside_water(footprint, water, footprint.pressed());
     // dE = rho d sum of u . dt grad p / rho over the faces = -d dt sum of p div u over the cells.
-    double taken = 0;
-    for (std::int32_t j = r.j0; j < r.j1; ++j) {
-        const std::int32_t wi = footprint.i0(), wj = j + footprint.j0();
-        const float* p = footprint.pressure() + at(0, j, footprint.size());
-        const float *u = water.velocity_x_row(wj), *v = water.velocity_y_row(wj), *above = water.velocity_y_row(wj + 1);
-        double row = 0;
-        for (std::int32_t i = r.i0; i < r.i1; ++i)
-            row -= static_cast<double>(p[i] * (u[wi + i + 1] - u[wi + i] + above[wi + i] - v[wi + i]));
-        taken += row;
-    }
+    if (r.empty()) return 1.0f;
+    const std::int32_t i0 = r.i0 + footprint.i0(), j0 = r.j0 + footprint.j0();
+    double taken = -static_cast<double>(kernels().pressed_divergence(
+        footprint.pressure() + at(r.i0, r.j0, footprint.size()), footprint.size(), water.velocity_x_row(j0) + i0,
+        water.velocity_y_row(j0) + i0, water.stride(), r.j1 - r.j0, r.i1 - r.i0));
     const FieldDef& def = water.def();
     taken *= static_cast<double>(def.depth * def.cell) * static_cast<double>(dt);
     const double most = std::max(work, 0.0);

@@ -413,6 +413,7 @@ TEST_CASE("the wet surface and the footprint are the same bits with every instru
         kernel.refine(fine + 32, 32, heights.data() + 16, 24, 3, 2);
         kernel.add_change_row(fine, heights.data() + 1, heights.data() + 11, 77);
         keep(fine);
+        keep(kernel.pressed_divergence(heights.data() + 3, 64, heights.data() + 70, heights.data() + 140, 64, 20, 43));
         return out;
     };
     const Kernels* sets[max_kernel_sets];
