@@ -104,14 +104,15 @@ Push push_on_water(Footprint& footprint, float factor) {
 
 float share_of_push(const Footprint& footprint, const Field& water, float dt, double work) {
     const Rect r = inside_water(footprint, water, footprint.pressed());
-    // dE = rho d sum of u . dt grad p / rho over the faces = -d dt sum of p div u over the cells.
     if (r.empty()) return 1.0f;
     const std::int32_t i0 = r.i0 + footprint.i0(), j0 = r.j0 + footprint.j0();
-    double taken = -static_cast<double>(kernels().pressed_divergence(
+    const float sum = kernels().pressed_divergence(
         footprint.pressure() + at(r.i0, r.j0, footprint.size()), footprint.size(), water.velocity_x_row(j0) + i0,
-        water.velocity_y_row(j0) + i0, water.stride(), r.j1 - r.j0, r.i1 - r.i0));
+        water.velocity_y_row(j0) + i0, water.stride(), r.j1 - r.j0, r.i1 - r.i0);
+    // dE = rho d sum of u . dt grad p / rho over the faces = -d dt sum of p div u over the cells.
     const FieldDef& def = water.def();
-    taken *= static_cast<double>(def.depth * def.cell) * static_cast<double>(dt);
+    const double taken =
+        -static_cast<double>(sum) * (static_cast<double>(def.depth * def.cell) * static_cast<double>(dt));
     const double most = std::max(work, 0.0);
     return taken > most ? static_cast<float>(most / taken) : 1.0f;
 }

@@ -1,6 +1,8 @@
 // One height field of shallow water and how it steps (Eqs. 7 and 8): heights at cell centres, velocities on cell faces.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory_resource>
 #include <vector>
@@ -79,9 +81,12 @@ public:
     /// The mean of some cells' heights over the beginnings of the next `steps` steps of `dt`, without pushes; as
     /// heights_ahead. False, and nothing done, where that takes more than `room` can hold.
     struct Room {
-        static constexpr std::int32_t cells = 256 * 256;
-        explicit Room(std::pmr::memory_resource* memory)
-            : height(cells, 0, memory), u(cells, 0, memory), v(cells, 0, memory) {}
+        static constexpr std::int64_t cells = 256 * 256;  ///< at most; water of fewer has room for all of them
+        Room(const FieldDef& def, std::pmr::memory_resource* memory)
+            : height(count(def), 0, memory), u(count(def), 0, memory), v(count(def), 0, memory) {}
+        static std::size_t count(const FieldDef& def) {
+            return static_cast<std::size_t>(std::min(cells, (std::int64_t{def.nx} + 1) * (def.ny + 1)));
+        }
         std::pmr::vector<float> height, u, v;
     };
     bool mean_heights(const Rect& cells, float dt, float gravity, std::uint32_t steps, Room& room, float* out) const;

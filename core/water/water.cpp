@@ -19,7 +19,7 @@ Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
       def_(def),
       pressure_(field.cells(), 0.0f, memory),
       scratch_(static_cast<std::size_t>(field.stride() * def.field.ny), 0.0f, memory),
-      room_(memory) {}
+      room_(def.field, memory) {}
 
 void Water::set_height(const float* height) {
     field.set_heights(height);

@@ -9,8 +9,8 @@
 namespace frm {
 namespace {
 
-/// Of the stable step, and s: what water may wait for. A floating box in a closed basin was driven by its own wave, when
-/// that spread later than with a half of the stable step; a picture of the water must not stutter.
+/// Of the stable step, and s: what water may wait for. With longer waits forces are further off than the rule's bound
+/// (docs/model.md, section 7); a picture of the water must not stutter.
 constexpr float longest_wait = 0.25f, longest_wait_time = 5e-3f;
 
 bool finite(const Forces& f) {
