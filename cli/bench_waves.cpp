@@ -78,19 +78,19 @@ double measure_active_waves(std::int32_t order, double seconds) {
     Field field(def, std::pmr::get_default_resource());
     std::vector<double> times;
     const Clock::time_point begin = Clock::now();
+    const std::int32_t first = 1024, size = 64, around = 2 * CalmTiles::side;
     do {
-        // Waves in two by two tiles; a step so short that they stay there.
-        const std::int32_t first = 1024;
-        field.calm();
-        field.wake({first, first, first + 64, first + 64});
-        for (std::int32_t j = 0; j < 64; ++j)
-            for (std::int32_t i = 0; i < 64; ++i)
+        // Waves in two by two tiles, and the steps until the tiles are looked at, with the look: no wave has left by then.
+        for (std::int32_t j = first - around; j < first + size + around; ++j)
+            for (float* const row : {field.height_row(j), field.velocity_x_row(j), field.velocity_y_row(j)})
+                std::fill_n(row + first - around, size + 2 * around, 0.0f);
+        field.wake({first, first, first + size, first + size});
+        for (std::int32_t j = 0; j < size; ++j)
+            for (std::int32_t i = 0; i < size; ++i)
                 field.height_row(first + j)[first + i] =
                     1e-3f * std::sin(0.3f * static_cast<float>(i)) * std::cos(0.2f * static_cast<float>(j));
-        for (int n = 0; n < 1000; ++n) {
-            const double us = microseconds(1, [&] { field.step(1e-6f, gravity, 1); });
-            if (n >= 50) times.push_back(us);
-        }
+        constexpr std::uint32_t steps = CalmTiles::interval;
+        times.push_back(microseconds(steps, [&] { field.step(0.002f, gravity, 1); }));
     } while (seconds_since(begin) < seconds);
     std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
     return times[times.size() / 2];

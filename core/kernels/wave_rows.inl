@@ -208,30 +208,32 @@ static void heights_ahead_row(float* __restrict out, const float* h, const float
 }
 
 /// As whole numbers the bits of |x| are in the order of |x|, and those of what is not a number come after all. What is
-/// loud mostly is so in its first rows: these are looked at alone.
+/// loud mostly is so in its first rows: these are looked at alone. A row's last vector may reach beyond its `count`.
 static bool any_above(const float* x, std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count, float limit) {
     constexpr std::int32_t size_bits = 0x7fffffff;
+    constexpr std::size_t words = sizeof(LaneNumbers) / sizeof(std::uint64_t);
     std::int32_t limit_bits;
     memcpy(&limit_bits, &limit, sizeof limit_bits);
+    const LaneNumbers lane = FRM_LANE_NUMBERS;
+    const std::ptrdiff_t whole = count / FRM_LANES * FRM_LANES;
+    const LaneNumbers rest = (lane < static_cast<int>(count - whole)) & size_bits;
     for (std::ptrdiff_t j = 0, end = 4; j < rows; end = rows) {
         LaneNumbers most = {};
-        std::int32_t most_of_rest = 0;
         for (; j < rows && j < end; ++j) {
             const float* const row = x + j * stride;
-            std::ptrdiff_t i = 0;
-            for (; i + FRM_LANES <= count; i += FRM_LANES) {
+            for (std::ptrdiff_t i = 0; i < whole; i += FRM_LANES) {
                 const LaneNumbers size = load_numbers(row + i) & size_bits;
                 most = size > most ? size : most;
             }
-            for (; i < count; ++i) {
-                std::int32_t bits;
-                memcpy(&bits, row + i, sizeof bits);
-                bits &= size_bits;
-                most_of_rest = bits > most_of_rest ? bits : most_of_rest;
-            }
+            if (whole == count) continue;
+            const LaneNumbers size = load_numbers(row + whole) & rest;
+            most = size > most ? size : most;
         }
-        for (int k = 0; k < FRM_LANES; ++k) most_of_rest = most[k] > most_of_rest ? most[k] : most_of_rest;
-        if (most_of_rest > limit_bits) return true;
+        const LaneNumbers above = most > limit_bits;
+        std::uint64_t any[words], one = 0;
+        memcpy(any, &above, sizeof any);
+        for (std::size_t k = 0; k < words; ++k) one |= any[k];
+        if (one) return true;
     }
     return false;
 }
