@@ -165,7 +165,7 @@ struct Base {
     }
 
     /// All of it from coarse to fine: what a frontier can be that no knob reaches by itself.
-    void together_knob(bool finer_cells = true) {
+    void together_knob() {
         struct Level {
             const char* label;
             std::uint32_t triangles, sources, frequency;
@@ -191,7 +191,6 @@ struct Base {
         };
         Knob knob{"together", "", {}, false};
         for (const Level& level : levels) {
-            if (level.cells < 1 && !finer_cells) continue;
             Choice choice{level.label, 0, scene.standard, level.label == std::string("standard")};
             if (!choice.standard)
                 choice.setup.map = map(level.triangles, level.sources, level.frequency, LawMap().rounding);
@@ -313,26 +312,15 @@ FrontierScene boat(bool quick) {
     s.standard.water = water_of(6, 0.05, 0.5);
     if (quick) s.standard.water->nx = s.standard.water->ny = 48;
     const double metres = quick ? 2.4 : 6;
-    base.water_knobs({0.2, 0.15, 0.1, 0.075, 0.05}, metres);
-    // What the body displaces at a depth reaches the surface 5.6 cells wide at most (docs/model.md, section 6): of smaller
-    // cells than about a quarter of the draught not all does. Hence the finest in this scene are the default's.
-    Knob too_fine{"cell, too fine", "m", {}};
-    for (const double cell : {0.0125, 0.025, 0.0375, 0.05}) {
-        if (quick && cell < 0.03) continue;
-        too_fine.choices.push_back({text_of(cell, "m"), cell, s.standard, cell == 0.05});
-        frm_water_def& water = *too_fine.choices.back().setup.water;
-        water.cell = static_cast<float>(cell);
-        water.nx = water.ny = static_cast<std::uint32_t>(std::lround(metres / cell));
-    }
-    s.knobs.push_back(std::move(too_fine));
+    base.water_knobs({0.2, 0.15, 0.1, 0.075, 0.05, 0.0375, 0.025, 0.0125}, metres);
     base.map_knobs({128, 288, 512, 1152, 4608, 8192}, {8, 14, 28, 56, 80, 160, 400}, false);
     base.tick_knob({10, 5, 2, 1, 0.5});
     base.skip_knob(water_rules);
-    base.together_knob(false);
+    base.together_knob();
     base.preset_knob();
-    s.finest.push_back(finest_of(base, 0.05, metres));
+    s.finest.push_back(finest_of(base, quick ? 0.025 : 0.0125, metres));
     s.reference =
-        "8,192 triangles, 400 sources, 1,026 directions, precision 0.005 %, cells of 50 mm at fourth order, "
+        "8,192 triangles, 400 sources, 1,026 directions, precision 0.005 %, cells of 12.5 mm at fourth order, "
         "ticks of 0.5 ms, nothing skipped";
     if (quick) s.reference = "the finest of --quick";
     return s;

@@ -63,12 +63,12 @@ void lay_displacement(Body& body, float level, bool spread, bool keep_still) {
     const Kernels& kernel = kernels();
     const float centre_depth = depth / scale, x0 = arm.x * per_cell, y0 = arm.y * per_cell;
     const Vec3f along_x = turn.row0 * to_cells, along_y = turn.row1 * to_cells, &up = turn.row2;
-    const int last = spread ? Pyramid::levels - 1 : elements.finest();
+    const int last = spread ? footprint.levels() - 1 : elements.finest();
     double left_over = 0;
     for (int k = elements.finest(); k <= last; ++k) {
         slice.cell = static_cast<float>(1 << k);
         slice.finest = k == elements.finest() ? 1.0f : 0.0f;
-        slice.widest = k == Pyramid::levels - 1 ? 1.0f : 0.0f;
+        slice.widest = k == footprint.levels() - 1 ? 1.0f : 0.0f;
         // Slices of this level lie between these depths.
         const float from = slice.finest > 0 || !spread ? 0.0f : 0.5f * slice.cell / slice.width;
         const float to = slice.widest > 0 || !spread ? 3e38f : 2 * slice.cell / slice.width;

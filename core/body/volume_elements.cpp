@@ -132,8 +132,9 @@ void close(VolumeElements::Block& block) {
 
 }  // namespace
 
-VolumeElements::VolumeElements(const Map& map, float cell, std::pmr::memory_resource* memory)
-    : level_{{Blocks(memory), Blocks(memory), Blocks(memory), Blocks(memory)}} {
+VolumeElements::VolumeElements(const Map& map, float cell, int levels, std::pmr::memory_resource* memory)
+    : level_{{Blocks(memory), Blocks(memory), Blocks(memory), Blocks(memory), Blocks(memory), Blocks(memory),
+              Blocks(memory)}} {
     const Vec3d low(map.shape.low), size = Vec3d(map.shape.high) - low;
     Lattice lattice{{}, low, {}, std::pmr::vector<Moment>(memory)};
     for (;; ++finest_) {
@@ -146,7 +147,7 @@ VolumeElements::VolumeElements(const Map& map, float cell, std::pmr::memory_reso
             lattice.n[k] = static_cast<std::int32_t>(std::clamp(wanted, 1.0, static_cast<double>(longest_side)));
             all *= lattice.n[k];
         }
-        if ((fits && all <= most_elements) || finest_ == Pyramid::levels - 1) break;
+        if ((fits && all <= most_elements) || finest_ == levels - 1) break;
     }
     // A body of many times the window: larger elements than the coarsest cells, never more of them.
     while (std::int64_t{lattice.n[0]} * lattice.n[1] * lattice.n[2] > most_elements)
@@ -158,7 +159,7 @@ VolumeElements::VolumeElements(const Map& map, float cell, std::pmr::memory_reso
 
     const Vec3d centre(map.clusters.centre);
     const double least = 1e-9 * map.shape.volume;
-    for (int level = finest_; level < Pyramid::levels; ++level) {
+    for (int level = finest_; level < levels; ++level) {
         // The first coarser level has whole cells: four of the finest edges.
         for (int times = level == finest_ ? 0 : level == finest_ + 1 ? 2 : 1; times > 0; --times) {
             Lattice coarse{{(lattice.n[0] + 1) / 2, (lattice.n[1] + 1) / 2, (lattice.n[2] + 1) / 2},

@@ -14,8 +14,8 @@ namespace frm {
 
 class VolumeElements {
 public:
-    /// `cell` is the water's, in the map's lengths.
-    VolumeElements(const Map& map, float cell, std::pmr::memory_resource* memory);
+    /// `cell` is the water's, in the map's lengths; `levels` are the footprint's.
+    VolumeElements(const Map& map, float cell, int levels, std::pmr::memory_resource* memory);
 
     /// Sixteen elements that lie together, and the box around their centroids and thickness.
     struct Block {
@@ -29,7 +29,7 @@ public:
     int finest() const { return finest_; }
 
 private:
-    std::array<Blocks, Pyramid::levels> level_;
+    std::array<Blocks, Pyramid::most_levels> level_;
     int finest_ = 0;
 };
 

@@ -20,8 +20,8 @@ constexpr float widths_per_depth = 1.47f;
 
 class Footprint {
 public:
-    /// `radius`: of a sphere around the body's centre that holds the body, m.
-    Footprint(const FieldDef& water, float radius, std::pmr::memory_resource* memory);
+    /// `radius`: of a sphere around the body's centre that holds the body, m; `volume`: the body's, m^3.
+    Footprint(const FieldDef& water, float radius, double volume, std::pmr::memory_resource* memory);
 
     /// Starts a tick: the window follows the body's centre, which is in cell (i, j) of the water.
     /// `water` is where the thickness goes; null where it does not (the paper's rule).
@@ -56,6 +56,7 @@ public:
     std::int32_t i0() const { return i0_; }  ///< the window's first cell in the water
     std::int32_t j0() const { return j0_; }
     std::int32_t size() const { return own.def().nx; }
+    int levels() const { return thickness_.levels(); }    ///< of what is laid
     float cell() const { return cell_; }                  ///< m
     const Rect& wet() const { return thickness_.wet(); }  ///< cells with thickness in this tick, in the window
     const Rect& wet_before() const { return wet_before_; }
@@ -84,6 +85,7 @@ public:
     float deposited_share() const;
 
 private:
+    Footprint(const FieldDef& water, float radius, int levels, std::pmr::memory_resource* memory);
     void shift(std::int32_t di, std::int32_t dj, Field* water);
     void leave_behind(std::int32_t di, std::int32_t dj, Field& water) const;
     void splat_wide(float x, float y, float width, float amount);

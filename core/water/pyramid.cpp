@@ -17,9 +17,10 @@ void spline_weights(float offset, float w[3]) {
 
 }  // namespace
 
-Pyramid::Pyramid(std::int32_t size, std::pmr::memory_resource* memory)
-    : grid_{{Grid(memory), Grid(memory), Grid(memory), Grid(memory)}} {
-    for (int k = 0; k < levels; ++k) {
+Pyramid::Pyramid(std::int32_t size, int levels, std::pmr::memory_resource* memory)
+    : levels_(levels),
+      grid_{{Grid(memory), Grid(memory), Grid(memory), Grid(memory), Grid(memory), Grid(memory), Grid(memory)}} {
+    for (int k = 0; k < levels_; ++k) {
         Grid& grid = grid_[static_cast<std::size_t>(k)];
         grid.size = size >> k;
         // Coarse rows go on to whole eights and have an empty one between them, for gather().
@@ -60,7 +61,7 @@ bool Pyramid::add(int level, float x, float y, float amount) {
 
 bool Pyramid::add_wide(float x, float y, float width, float amount) {
     int level = 0;
-    while (level < levels - 2 && width >= width_of[level + 1]) ++level;
+    while (level < levels_ - 2 && width >= width_of[level + 1]) ++level;
     const auto cell = static_cast<float>(1 << level);
     const float below = width_of[level] * width_of[level], above = width_of[level + 1] * width_of[level + 1];
     const float share = std::clamp((width * width - below) / (above - below), 0.0f, 1.0f);  // of the next level
@@ -73,7 +74,7 @@ bool Pyramid::add_wide(float x, float y, float width, float amount) {
 
 void Pyramid::gather() {
     const auto refine = kernels().refine;
-    for (std::size_t k = levels - 1; k > 0; --k) {
+    for (auto k = static_cast<std::size_t>(levels_ - 1); k > 0; --k) {
         const Grid& from = grid_[k];
         if (from.wet.empty()) continue;
         Grid& to = grid_[k - 1];

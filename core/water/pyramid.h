@@ -14,15 +14,16 @@ namespace frm {
 
 class Pyramid {
 public:
-    static constexpr int levels = 4;
+    static constexpr int fewest_levels = 4, most_levels = 7;
     /// As wide as a Gaussian of this many cells of the finest grid is what a spline of each level adds up to there. Its
     /// variance is 1/4 of its own cells squared, and 3/4 of the finer ones' at each gathering: sqrt(1/2 4^k - 1/4).
-    static constexpr float width_of[levels] = {0.5f, 1.3228757f, 2.7838822f, 5.6347138f};
+    static constexpr float width_of[most_levels] = {0.5f,       1.3228757f, 2.7838822f, 5.6347138f,
+                                                    11.302654f, 22.621892f, 45.252072f};
     /// The same for all but the finest, nearly, in cells of the level.
     static constexpr float width_of_spline = 0.7f;
 
-    /// `size`: cells along a side of the finest grid, a multiple of sixteen.
-    Pyramid(std::int32_t size, std::pmr::memory_resource* memory);
+    /// `size`: cells along a side of the finest grid, a multiple of sixteen and of two of the coarsest cells.
+    Pyramid(std::int32_t size, int levels, std::pmr::memory_resource* memory);
 
     /// Everything is zero again. Costs what was laid.
     void clear();
@@ -32,7 +33,8 @@ public:
     /// The same on the two levels between whose widths `width` (cells of the finest grid) lies, so that the variance is
     /// that of such a Gaussian, whose values on the finest grid add up to `amount`; at most widest() wide.
     bool add_wide(float x, float y, float width, float amount);
-    static constexpr float widest() { return width_of[levels - 1]; }
+    float widest() const { return width_of[levels_ - 1]; }
+    int levels() const { return levels_; }
     /// Adds what was laid on coarse grids to the finest.
     void gather();
 
@@ -58,7 +60,8 @@ private:
         std::ptrdiff_t stride = 0;
         Rect wet;
     };
-    std::array<Grid, levels> grid_;
+    int levels_;
+    std::array<Grid, most_levels> grid_;  ///< those beyond levels_ are empty
 };
 
 }  // namespace frm

@@ -94,8 +94,10 @@ Body& World::create_body(const BodyDef& def, std::uint32_t id) {
 }
 
 void World::give_footprint(Body& body) {
-    body.footprint.emplace(water_->def().field, body.radius(), memory_);
-    body.elements.emplace(*body.def.map, water_->def().field.cell / body.def.scale, memory_);
+    const float cell = water_->def().field.cell, scale = body.def.scale;
+    const double volume = body.def.map->shape.volume * static_cast<double>(scale * scale * scale);
+    body.footprint.emplace(water_->def().field, body.radius(), volume, memory_);
+    body.elements.emplace(*body.def.map, cell / scale, body.footprint->levels(), memory_);
 }
 
 void World::destroy_body(Body& body) {

@@ -14,7 +14,7 @@ PLAYED = ("stroke", "boat", "tow", "crowd")
 # A knob has its colour in every plot.
 COLOURS = {"triangles": "C0", "sources": "C1", "directions": "C2", "map precision": "C3", "cell": "C4", "order": "C5", "tick": "C6",
            "skip": "C7", "error budget": "C8", "time budget": "C9", "preset": "black", "points counted": "C3", "points smoothed": "C1",
-           "map": "C2", "MuJoCo": "C3", "cell, order 2": "C4", "cell, order 4": "C5", "cell, too fine": "C3", "together": "0.4"}
+           "map": "C2", "MuJoCo": "C3", "cell, order 2": "C4", "cell, order 4": "C5", "together": "0.4"}
 SCATTERED = ("together", "skip")  # settings without an order: no line joins them
 LABEL_AT = {"accurate": (8, -14)}
 CAPTIONS = {
@@ -30,9 +30,7 @@ CAPTIONS = {
            "nothing.",
     "crowd": "A time budget is one for all bodies together; an error budget is each body's.",
     "stroke": "No knob by itself gets far: triangles, sources, cells and ticks each have a like part in the error.",
-    "boat": "Cells below a quarter of the draught (*too fine*) make the waves of the hull too small, at any price: what the body displaces at a "
-            "depth is spread over 5.6 cells at most, and the rest of it is left out ([model.md](model.md#limits)). Larger cells agree with "
-            "each other. Most of the time goes into the displaced volume.",
+    "boat": "Most of the time goes into the displaced volume.",
     "maps": "The plate of 8 x 1 x 30 cm from bakes at a draft's resolution with 6 to 102 directions (before symmetry), against that of "
             "102. MuJoCo's box is an ellipsoid of the same half axes to its fluid model, with its usual coefficients. It is compared with a "
             "baked map, not with a measurement: how far the maps are off direct runs is in [validation-map.md](validation-map.md). The smallest time "
@@ -107,7 +105,7 @@ def steps(scene):
     """(knob, default, coarser, finer) for knobs whose settings have an order."""
     for knob, rows in scene.knobs().items():
         at = next((i for i, row in enumerate(rows) if row["default"]), None)
-        if at is None or knob in ("skip", "error budget", "time budget", "together", "cell, too fine", "preset", "tick") or rows[0]["peer"]:
+        if at is None or knob in ("skip", "error budget", "time budget", "together", "preset", "tick") or rows[0]["peer"]:
             continue
         yield knob, rows[at], rows[at - 1] if at > 0 else None, rows[at + 1] if at + 1 < len(rows) else None
 

@@ -23,6 +23,7 @@ const Section sections[] = {
     {"large", FRM_AXES_Z_UP_RIGHT, section_large},
     {"extreme", FRM_AXES_Z_UP_RIGHT, section_extreme},
     {"teleports", FRM_AXES_Z_UP_RIGHT, section_teleports},
+    {"hull", FRM_AXES_Z_UP_RIGHT, section_hull},
     {"models", FRM_AXES_Z_UP_RIGHT, section_models},
     {"skips", FRM_AXES_Z_UP_RIGHT, section_skips},
     {"calm", FRM_AXES_Z_UP_RIGHT, section_calm},

@@ -88,6 +88,7 @@ void section_host_water(Scene *scene);
 void section_large(Scene *scene);
 void section_extreme(Scene *scene);
 void section_teleports(Scene *scene);
+void section_hull(Scene *scene);
 /* sections_rules.c */
 void section_models(Scene *scene);
 void section_skips(Scene *scene);

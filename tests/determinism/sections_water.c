@@ -199,3 +199,28 @@ void section_teleports(Scene *scene) {
     }
     see_water(scene, water, 0);
 }
+
+/* A body that is large for its cells: what it displaces, and presses, is laid on more grids than others need. */
+void section_hull(Scene *scene) {
+    const frm_world_def def = world_def();
+    const frm_world world = make_world(scene, &def);
+    const frm_water water = make_water(scene, world, 112, 96, FRM_BORDER_REFLECTING, 2);
+    const frm_body body = make_body(scene, world, scene->full_map, 10, 1);
+    const Path path = {{0, 0, -0.4}, {0.3f, 0.2f, 0.9f}, 0.8, 0.5f, 1.5f};
+    double most = 0;
+    int t;
+    for (t = 0; t < 160; ++t) {
+        frm_body_state state;
+        place(scene, body, &path, 0.004 * (double)t);
+        MUST(scene, frm_world_tick(world, 0.004f));
+        see_body(scene, body);
+        if (t % 16 == 0) see_world(scene, world);
+        memset(&state, 0, sizeof state);
+        state.struct_size = sizeof state;
+        MUST(scene, frm_body_get_state(body, &state));
+        if ((double)state.displaced_volume > most) most = (double)state.displaced_volume;
+    }
+    see_water(scene, water, 0);
+    /* Six grids: 0.44 cbrt(V) is more than the widest of five (core/water/footprint.cpp), 11.3 cells of 25 mm. */
+    covers(most > 0.27, "the hull is too small for its cells");
+}

@@ -374,7 +374,8 @@ TEST_CASE("the wet surface and the footprint are the same bits with every instru
     const HeightGrid grid{heights.data(), 64, 64, 64, 0.001f};
     const GridPlacement at{30, 31, 0.3f, 0.7f, {19, 3, 5}, {-3, 19, 4}};
     const BodyLevel level{0.03f, {0.1f, -0.3f, 0.949f}, 1};
-    const VolumeElements elements(*map, 0.05f, test::memory());
+    constexpr int levels = 5;
+    const VolumeElements elements(*map, 0.05f, levels, test::memory());
     const auto run = [&](const Kernels& kernel) {
         std::vector<float> out;
         const auto keep = [&](const auto& value) {
@@ -400,9 +401,9 @@ TEST_CASE("the wet surface and the footprint are the same bits with every instru
         float range[3];
         kernel.height_range(heights.data() + 5, 64, 37, 60, range, range + 1, range + 2);
         keep(range);
-        for (int k = 0; k < Pyramid::levels; ++k) {
-            const SliceLevel slice{static_cast<float>(1 << k), k == Pyramid::levels - 1 ? 1.0f : 0.0f,
-                                   k == 0 ? 1.0f : 0.0f, 1, 50};
+        for (int k = 0; k < levels; ++k) {
+            const SliceLevel slice{static_cast<float>(1 << k), k == levels - 1 ? 1.0f : 0.0f, k == 0 ? 1.0f : 0.0f, 1,
+                                   50};
             for (const auto& block : elements.at(k)) {
                 float laid[kernel_lanes], left[kernel_lanes];
                 kernel.slice_elements(&block.element, &slice, 0.1f, 0.1f, -0.3f, 0.949f, laid, left);

@@ -286,8 +286,9 @@ TEST_CASE("a dry source feels nothing of the spin", "[resistance]") {
 
 TEST_CASE("a source's pressure lies on the water around it, as wide as its depth asks for", "[resistance]") {
     const FieldDef water = test::water_of(200, 0.025f, 1).field;
-    Footprint footprint(water, 0.3f, test::memory());
-    const double cell = static_cast<double>(water.cell), widest = static_cast<double>(Pyramid::widest());
+    Footprint footprint(water, 0.3f, 0.01, test::memory());
+    const double cell = static_cast<double>(water.cell),
+                 widest = static_cast<double>(Pyramid::width_of[footprint.levels() - 1]);
     for (const float depth : {0.0f, 0.02f, 0.05f, 0.07f, 0.13f}) {
         for (const float shift : {0.1f, 0.45f, 0.95f}) {
             footprint.begin(100, 100, {100, 100, shift, 0.7f}, nullptr);
