@@ -30,6 +30,7 @@ public:
 
     void set_safety(const frm_device_safety_def& def);
     frm_device_safety_state safety() const;
+    const frm_device_safety_def& safety_def() const { return safety_.def(); }
     std::uint32_t safety_faults() const { return safety_.latch().faults(); }
     /// Reads the device's limits and starts the watchdog, so that engage() only sets what is set in memory.
     void prepare();
