@@ -737,7 +737,7 @@ FRM_API frm_status FRM_CALL frm_device_stop(frm_device device);
  * leads over frm_device_engage and a ramp from zero. A limit of 0 that says so takes the device's own. */
 typedef struct frm_device_safety_def {
     uint32_t struct_size;
-    uint32_t passivity;      /* 1 (default): passivity observer and controller, in a servo a limit on drag; 0: neither */
+    uint32_t passivity;      /* 1 (default): passivity observer and controller, in a servo a drag limit; 0: neither */
     float max_force;         /* N, 0 to 1e4; default 0: frm_device_info.max_force, which is never exceeded */
     float max_torque;        /* N m, 0 to 1e4; default 0: frm_device_info.max_torque, which is never exceeded */
     float slew_time;         /* s, 0 to 1: the least for a change from none to the largest wrench; default 0.005 */

@@ -29,7 +29,6 @@ namespace {
 std::string configuration(const Folder& folder, const Json& change = Json::object()) {
     Json json = Json::parse(std::ifstream(FRM_TEST_SAMPLES "/devices/SpidarG6X3R.json"));
     json["timeout"] = 1.0;
-    json["ramp"] = 0.1;
     json["checks"] = {{"string_speed", 0.2}};
     json.merge_patch(change);
     const std::string path = folder.file("device.json");
