@@ -77,7 +77,8 @@ frm_status FRM_CALL frm_device_open_spidar_g(frm_context context, const char* co
         if (rotary < -1 || rotary > 15)
             throw Error(FRM_ERROR_ARGUMENT, "rotary is %d; it is 0 to 15, or -1 for any", rotary);
         spidar_g::Source source{configuration, rotary, c.axes().host(), false};
-        *device = c.add(Kind::device, c.make<Device>(spidar_g::driver(), &source, 0u));
+        // Kept: its counters wrap.
+        *device = c.add(Kind::device, c.make<Device>(spidar_g::driver(), &source, 0u, true));
     });
 }
 

@@ -1,6 +1,7 @@
 #include "device/device.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "core/error.h"
@@ -30,11 +31,14 @@ frm_device_driver checked_driver(const frm_device_driver* driver) {
     return d;
 }
 
-/// One call of the driver at a time. It is only ever waited for while the watchdog stops a device whose host has stalled.
+/// One call of the driver at a time. It is only ever waited for while the watchdog stops a device whose host has stalled, or
+/// keeps one going that nobody talked to.
 class Device::Busy {
 public:
     explicit Busy(std::atomic<bool>& flag) : flag_(flag) {
-        while (flag_.exchange(true, std::memory_order_acquire)) std::this_thread::yield();
+        // Asleep: whoever yields at a real-time priority leaves the watchdog no time on the same core.
+        while (flag_.exchange(true, std::memory_order_acquire))
+            std::this_thread::sleep_for(std::chrono::microseconds(20));
     }
     ~Busy() { flag_.store(false, std::memory_order_release); }
     Busy(const Busy&) = delete;
@@ -44,9 +48,18 @@ private:
     std::atomic<bool>& flag_;
 };
 
-Device::Device(const frm_device_driver& driver, void* user, std::uint32_t index)
-    : driver_(driver), user_(user), watchdog_(&Device::stop_by_watchdog, this) {
+Device::Device(const frm_device_driver& driver, void* user, std::uint32_t index, bool kept)
+    : driver_(driver),
+      user_(user),
+      watchdog_(&Device::stop_by_watchdog, kept ? &Device::keep_by_watchdog : nullptr, this) {
     require_success(driver_.open(user_, index, &instance_), "open");
+    if (!kept) return;
+    try {
+        watchdog_.begin();
+    } catch (...) {
+        driver_.close(user_, instance_);
+        throw;
+    }
 }
 
 Device::~Device() {
@@ -66,6 +79,13 @@ void Device::stop_by_watchdog(void* self) {
     device.busy_.store(false, std::memory_order_release);
 }
 
+void Device::keep_by_watchdog(void* self) {
+    auto& device = *static_cast<Device*>(self);
+    if (device.busy_.exchange(true, std::memory_order_acquire)) return;
+    device.driver_.stop(device.user_, device.instance_);
+    device.busy_.store(false, std::memory_order_release);
+}
+
 frm_device_info Device::info() {
     frm_device_info out{};
     out.struct_size = sizeof out;
@@ -77,6 +97,8 @@ frm_device_info Device::info() {
 
 void Device::calibrate() {
     const Busy busy(busy_);
+    // What was felt until now was of other poses.
+    safety_.restart();
     require_success(driver_.calibrate(user_, instance_), "calibrate");
 }
 

@@ -15,8 +15,9 @@ class Recorder;
 
 class Device : public api::Object {
 public:
-    /// Opens device `index` of the driver. Throws Error (FRM_ERROR_DEVICE).
-    Device(const frm_device_driver& driver, void* user, std::uint32_t index);
+    /// Opens device `index` of the driver. `kept`: its stop() is called every few milliseconds while nobody exchanges, from a
+    /// thread of the library, because it has something to follow. Throws Error (FRM_ERROR_DEVICE).
+    Device(const frm_device_driver& driver, void* user, std::uint32_t index, bool kept = false);
     ~Device() override;
 
     frm_device_info info();
@@ -30,6 +31,7 @@ public:
 
     void set_safety(const frm_device_safety_def& def);
     frm_device_safety_state safety() const;
+    const frm_device_safety_def& safety_def() const { return safety_.def(); }
     std::uint32_t safety_faults() const { return safety_.latch().faults(); }
     /// Reads the device's limits and starts the watchdog, so that engage() only sets what is set in memory.
     void prepare();
@@ -49,6 +51,7 @@ public:
 private:
     class Busy;
     static void stop_by_watchdog(void* self);
+    static void keep_by_watchdog(void* self);
     void stop_driver();
     void require_possible(const api::Axes& axes, const frm_device_state& state);
 

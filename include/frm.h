@@ -737,7 +737,7 @@ FRM_API frm_status FRM_CALL frm_device_stop(frm_device device);
  * leads over frm_device_engage and a ramp from zero. A limit of 0 that says so takes the device's own. */
 typedef struct frm_device_safety_def {
     uint32_t struct_size;
-    uint32_t passivity;      /* 1 (default): passivity observer and controller (Hannaford and Ryu 2002); 0: none */
+    uint32_t passivity;      /* 1 (default): passivity observer and controller, in a servo a drag limit; 0: neither */
     float max_force;         /* N, 0 to 1e4; default 0: frm_device_info.max_force, which is never exceeded */
     float max_torque;        /* N m, 0 to 1e4; default 0: frm_device_info.max_torque, which is never exceeded */
     float slew_time;         /* s, 0 to 1: the least for a change from none to the largest wrench; default 0.005 */
@@ -747,8 +747,8 @@ typedef struct frm_device_safety_def {
     float max_speed;         /* m/s, 0.01 to 1e3: faster is a fault, after which the grip is braked; default 3 */
     float max_spin;          /* rad/s, 0.01 to 1e4; default 30 */
     float brake_time;        /* s, 0 to 10: for so long a grip that ran away is braked; default 0.25 */
-    float grip_mass;         /* kg, 1e-3 to 1e3: the least that moves with the grip; default 0.1. Damping, of the brake
-                                and of the passivity controller, stays under grip_mass / (4 cycles) */
+    float grip_mass;         /* kg, 1e-3 to 1e3: the least that moves with the grip; default 0.1. Damping, of the brake,
+                                the passivity controller and quick drag, stays under grip_mass / (4 cycles) */
     float grip_inertia;      /* kg m^2, 1e-8 to 1e3: the least, about the grip's origin; default 5e-5 */
     float energy_reserve;    /* J, 0 to 1e3: what the quick part of the force may give before it counts as made by the
                                 loop; default 0.005 */

@@ -66,13 +66,19 @@ void Safety::engage(const Six& most) {
     most_.linear.x = least(def_.max_force, most.linear.x);
     most_.angular.x = least(def_.max_torque, most.angular.x);
     phase_ = Phase::waiting;
+    limited_ = damped_ = 0;
+    restart();
+}
+
+void Safety::restart() {
+    if (engaged()) phase_ = Phase::waiting;
     ramp_.reset();
     linear_.reset();
     angular_.reset();
     checks_.reset();
     has_state_ = false;
-    limited_ = damped_ = 0;
     braking_ = 0;
+    stopped();
 }
 
 void Safety::disengage() {

@@ -28,6 +28,8 @@ public:
     void engage(const Six& most);
     void disengage();
     void clear_fault() { latch_.clear(); }
+    /// Poses begin anew: if engaged, forces grow from zero once a good state has come.
+    void restart();
     /// The device has been stopped: what it displays is nothing.
     void stopped();
 

@@ -14,6 +14,8 @@ std::int64_t now_ns() {
 }
 
 constexpr std::int64_t longest_sleep = 10'000'000, shortest_sleep = 200'000;
+// A string at 10 m/s wraps a 16-bit counter in 55 ms (docs/devices.md).
+constexpr std::int64_t alone_after = 10'000'000, keep_period = 5'000'000;
 
 }  // namespace
 
@@ -31,7 +33,14 @@ void Watchdog::end() {
 void Watchdog::feed(std::uint64_t deadline_ns) {
     constexpr std::uint64_t year = 31'536'000'000'000'000;  // sums stay far from the end of the numbers
     const auto deadline = static_cast<std::int64_t>(std::min(deadline_ns, year));
-    expires_.store(deadline > 0 ? now_ns() + deadline : 0, std::memory_order_release);
+    const std::int64_t now = now_ns();
+    fed_.store(now, std::memory_order_relaxed);
+    expires_.store(deadline > 0 ? now + deadline : 0, std::memory_order_release);
+}
+
+bool Watchdog::alone() const {
+    return expires_.load(std::memory_order_acquire) == 0 &&
+           now_ns() - fed_.load(std::memory_order_relaxed) > alone_after;
 }
 
 bool Watchdog::overdue() const {
@@ -49,8 +58,10 @@ void Watchdog::watch() {
     while (!quit_.load()) {
         const std::int64_t expires = expires_.load(std::memory_order_acquire);
         if (overdue()) stop_(user_);
+        if (keep_ && alone()) keep_(user_);
         const std::int64_t left = expires != 0 ? expires - now_ns() : longest_sleep;
-        std::this_thread::sleep_for(std::chrono::nanoseconds(std::clamp(left, shortest_sleep, longest_sleep)));
+        std::this_thread::sleep_for(
+            std::chrono::nanoseconds(std::clamp(left, shortest_sleep, keep_ ? keep_period : longest_sleep)));
     }
 }
 

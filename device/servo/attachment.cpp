@@ -20,12 +20,11 @@ Quat<float> normal(const Quat<float>& q) {
 
 Rotation<float> turn(const Quat<float>& q) { return Rotation<float>(normal(q)); }
 
-/// From the grip's origin to the body's, in the world.
+}  // namespace
+
 Vec3f lever(const Attachment& a, const frm_pose& device) {
     return turn(plain(a.anchor.rotation) * normal(plain(device.rotation))).to_world(Vec3f(plain(a.grip.position)));
 }
-
-}  // namespace
 
 frm_quaternion unit(const frm_quaternion& q, const char* what) {
     const double size = std::sqrt(
@@ -54,8 +53,8 @@ frm_twist body_twist(const Attachment& a, const frm_pose& device, const frm_twis
     return {plain(linear), plain(angular)};
 }
 
-frm_wrench about_grip(const Attachment& a, const frm_pose& device, const frm_wrench& on_body) {
-    return {on_body.force, plain(plain(on_body.torque) + cross(lever(a, device), plain(on_body.force)))};
+Wrench about_grip(const Vec3f& arm, const Wrench& on_body) {
+    return {on_body.force, on_body.torque + cross(arm, on_body.force)};
 }
 
 frm_wrench in_device(const Attachment& a, const frm_wrench& in_world) {

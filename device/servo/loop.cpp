@@ -3,7 +3,14 @@
 #include <cstdio>
 #include <cstring>
 
+#include "core/body/coefficients.h"
+
 namespace frm::device {
+namespace {
+
+frm_vec3 plain(const Vec3f& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
 
 frm_servo_input default_input() {
     frm_servo_input input{};
@@ -100,15 +107,31 @@ bool ServoLoop::tick_world() {
     return true;
 }
 
+/// What of a wrench about the grip it can be made to feel; `arm`: from there to the body's origin.
+Wrench ServoLoop::borne(const Wrench& wrench, const Vec3f& arm, const frm_servo_input& in) {
+    const frm_device_safety_def& safety = parts_.device.safety_def();
+    if (!safety.passivity || !state_.engaged) {
+        drag_limit_.reset();
+        return wrench;
+    }
+    const Coefficients c = coefficients_of(parts_.body, parts_.world.def().fluid);
+    return drag_limit_.limit(wrench, about(Vec3d(arm), c.damping), static_cast<double>(dt_),
+                             {static_cast<double>(in.force_scale * in.motion_scale / safety.grip_mass),
+                              static_cast<double>(in.torque_scale / safety.grip_inertia)});
+}
+
 void ServoLoop::feel(const ServoRequests& requests) {
     const frm_servo_input& in = requests.input;
     state_.wrench = parts_.axes.wrench_out(parts_.body.forces.total);
-    frm_wrench felt = about_grip(attachment_, grip_.pose, state_.wrench);
+    // In frm's own axes, which are those of the coefficients.
+    const Vec3f arm = parts_.axes.vector_in(plain(lever(attachment_, grip_.pose)));
+    const Wrench felt = borne(about_grip(arm, parts_.body.forces.total), arm, in);
+    const frm_wrench out = parts_.axes.wrench_out(felt);
     const auto scale = [](const frm_vec3& v, float by, const frm_vec3& more) {
         return frm_vec3{v.x * by + more.x, v.y * by + more.y, v.z * by + more.z};
     };
-    felt = {scale(felt.force, in.force_scale, in.extra.force), scale(felt.torque, in.torque_scale, in.extra.torque)};
-    command_.wrench = in_device(attachment_, felt);
+    command_.wrench = in_device(attachment_, {scale(out.force, in.force_scale, in.extra.force),
+                                              scale(out.torque, in.torque_scale, in.extra.torque)});
 }
 
 bool ServoLoop::tick(const ServoRequests& requests) {

@@ -4,6 +4,7 @@
 #include "core/api/objects.h"
 #include "device/device.h"
 #include "device/servo/attachment.h"
+#include "device/servo/drag_limit.h"
 #include "device/servo/statistics.h"
 
 namespace frm::device {
@@ -46,6 +47,7 @@ private:
     void move();
     bool tick_world();
     void feel(const ServoRequests& requests);
+    Wrench borne(const Wrench& wrench, const Vec3f& arm, const frm_servo_input& input);
     void fail(frm_status status, const char* text);
 
     Parts parts_;
@@ -53,6 +55,7 @@ private:
     ServoRequests seen_;
     Attachment attachment_;
     frm_device_command command_{};
+    DragLimit drag_limit_;
     frm_device_state grip_{};
     frm_servo_state state_{};
     std::uint32_t rest_ = 0;  ///< ticks before a device that failed is asked again

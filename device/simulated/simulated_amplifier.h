@@ -19,6 +19,7 @@ public:
     void clear() { replies_ = 0; }
 
     HandOnStrings& hand() { return hand_; }
+    const HandOnStrings& hand() const { return hand_; }
     /// What the DAC says now.
     const Tensions& tensions() const { return tensions_; }
     std::uint64_t cycles() const { return cycles_; }

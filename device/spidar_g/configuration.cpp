@@ -206,11 +206,10 @@ Configuration parse_configuration(const std::string& text, const std::string& wh
     } catch (const Json::exception& e) {
         throw Error(FRM_ERROR_CORRUPT, "%s: not JSON: %.200s", where.c_str(), e.what());
     }
-    const Reader root(
-        json, where,
-        {"format", "version", "name",    "lever",           "motors",       "amplifier",    "digits_per_volt",
-         "bus",    "vendor",  "product", "button_mask",     "report_bytes", "report_start", "report_stop",
-         "period", "timeout", "ramp",    "velocity_window", "checks",       "hand"});
+    const Reader root(json, where,
+                      {"format", "version", "name", "lever", "motors", "amplifier", "digits_per_volt", "bus", "vendor",
+                       "product", "button_mask", "report_bytes", "report_start", "report_stop", "period", "timeout",
+                       "velocity_window", "checks", "hand"});
     if (!root.has("format") || json["format"] != "frm-spidar-g")
         throw Error(FRM_ERROR_CORRUPT, "%s.format must be \"frm-spidar-g\"", where.c_str());
     std::uint32_t version = 0;
@@ -231,7 +230,6 @@ Configuration parse_configuration(const std::string& text, const std::string& wh
     root.number("timeout", timeout, 1e-3, 1);
     out.period_ns = static_cast<std::uint64_t>(period * 1e9 + 0.5);
     out.timeout_ns = static_cast<std::uint64_t>(timeout * 1e9 + 0.5);
-    root.number("ramp", out.ramp, 0, 60);
     root.integer("velocity_window", out.velocity_window, 2, 64);
     if (root.has("checks")) {
         const Reader r(root.at("checks"), root.where("checks"), {"residual", "string_speed"});

@@ -48,7 +48,6 @@ struct Configuration {
     std::vector<std::uint8_t> report_start, report_stop;  ///< HID: sent once on opening, on closing
     std::uint64_t period_ns = 1'000'000;
     std::uint64_t timeout_ns = 10'000'000;  ///< for one exchange
-    double ramp = 0.5;                      ///< s from no force to all of it
     std::uint32_t velocity_window = 8;      ///< poses
     Checks checks;
     Hand hand;

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <mutex>
-#include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "device/simulated/simulated_transport.h"
-#include "device/spidar_g/watchdog.h"
 #ifdef FRM_HAVE_LIBUSB
 #include "device/spidar_g/usb_transport.h"
 #endif
@@ -46,15 +43,10 @@ private:
     api::Axes device_, host_;
 };
 
+/// One call at a time: device/device.cpp sees to it, and the safety layer and its watchdog stand there.
 struct Instance {
-    Instance(std::unique_ptr<SpidarG> d, std::uint32_t axes) : device(std::move(d)), frames(axes) {
-        if (device->transport().runs_by_itself()) watchdog.emplace(*device, mutex);
-    }
-
     std::unique_ptr<SpidarG> device;
     Frames frames;
-    std::mutex mutex;
-    std::optional<Watchdog> watchdog;  ///< after what it watches, so that it ends first
     std::uint64_t exchanges = 0;
 };
 
@@ -129,7 +121,7 @@ frm_status FRM_CALL open(void* user, std::uint32_t, void** instance) {
     } else {
         device = find_one(c, source.rotary);
     }
-    *instance = std::make_unique<Instance>(std::move(device), source.axes).release();
+    *instance = new Instance{std::move(device), Frames(source.axes), 0};
     return FRM_OK;
 }
 
@@ -139,46 +131,39 @@ frm_status FRM_CALL close(void*, void* instance) {
 }
 
 frm_status FRM_CALL info(void*, void* instance, frm_device_info* out) {
-    const std::lock_guard<std::mutex> lock(of(instance).mutex);
     describe(*of(instance).device, *out);
     return FRM_OK;
 }
 
 frm_status FRM_CALL calibrate(void*, void* instance) {
-    if (of(instance).watchdog) of(instance).watchdog->disarm();
-    const std::lock_guard<std::mutex> lock(of(instance).mutex);
     return of(instance).device->calibrate() ? FRM_OK : FRM_ERROR_DEVICE;
 }
 
 frm_status FRM_CALL exchange(void*, void* instance, const frm_device_command* command, frm_device_state* state) {
     Instance& i = of(instance);
-    if (i.watchdog) i.watchdog->exchanged(command->deadline_ns);
-    const std::lock_guard<std::mutex> lock(i.mutex);
     const GripState grip = i.device->exchange(i.frames.wrench_in(command->wrench));
     state->pose = i.frames.pose_out(grip.pose);
     state->twist = {i.frames.vector_out(grip.twist.linear), i.frames.axial_out(grip.twist.angular)};
     state->achieved = {i.frames.vector_out(grip.achieved.force), i.frames.axial_out(grip.achieved.torque)};
     state->buttons = grip.buttons;
     state->faults = grip.faults;
-    state->status = grip.faults & ~static_cast<std::uint32_t>(FRM_DEVICE_FAULT_UNCALIBRATED | FRM_DEVICE_FAULT_DEADLINE)
-                        ? FRM_DEVICE_FAULT
-                    : grip.faults & FRM_DEVICE_FAULT_UNCALIBRATED ? FRM_DEVICE_UNCALIBRATED
-                                                                  : FRM_DEVICE_READY;
+    state->status = grip.faults & ~static_cast<std::uint32_t>(FRM_DEVICE_FAULT_UNCALIBRATED) ? FRM_DEVICE_FAULT
+                    : grip.faults & FRM_DEVICE_FAULT_UNCALIBRATED                            ? FRM_DEVICE_UNCALIBRATED
+                                                                                             : FRM_DEVICE_READY;
     state->time_ns = grip.time_ns;
     state->sequence = i.exchanges++;
     return FRM_OK;
 }
 
 frm_status FRM_CALL raw(void*, void* instance, std::uint8_t* data, std::uint32_t capacity, std::uint32_t* size) {
-    *size = static_cast<std::uint32_t>(last_reply(instance, data, capacity));
+    const Packet& reply = of(instance).device->last_reply();
+    std::copy_n(reply.bytes.begin(), std::min<std::size_t>(reply.size, capacity), data);
+    *size = static_cast<std::uint32_t>(reply.size);
     return FRM_OK;
 }
 
 frm_status FRM_CALL stop(void*, void* instance) {
-    Instance& i = of(instance);
-    if (i.watchdog) i.watchdog->disarm();
-    const std::lock_guard<std::mutex> lock(i.mutex);
-    i.device->stop();
+    of(instance).device->stop();
     return FRM_OK;
 }
 
@@ -188,13 +173,6 @@ const frm_device_driver& driver() {
     static const frm_device_driver table{
         sizeof(frm_device_driver), 0, enumerate, open, close, info, calibrate, exchange, stop, raw};
     return table;
-}
-
-std::size_t last_reply(void* instance, std::uint8_t* data, std::size_t capacity) {
-    const std::lock_guard<std::mutex> lock(of(instance).mutex);
-    const Packet& reply = of(instance).device->last_reply();
-    std::copy_n(reply.bytes.begin(), std::min(reply.size, capacity), data);
-    return reply.size;
 }
 
 }  // namespace frm::spidar_g

@@ -23,8 +23,4 @@ struct Source {
 
 const frm_device_driver& driver();
 
-/// The raw reply of the last exchange of an instance of driver(): at most `capacity` bytes of it; returns how many
-/// there are. Counters, A/D and switches as the amplifier's format has them.
-std::size_t last_reply(void* instance, std::uint8_t* data, std::size_t capacity);
-
 }  // namespace frm::spidar_g

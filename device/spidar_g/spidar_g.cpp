@@ -162,19 +162,14 @@ void SpidarG::look_for_faults(const PoseFit& fit, const Lengths& lengths, double
     if (fit.converged && now == 0 && worst > checks.residual) now |= name_fault(fit, lengths, worst);
     // A slack string is wound up by its least tension and all is well again; the others stay until calibration.
     if (!(now & FRM_DEVICE_FAULT_SLACK_STRING) && (state_.faults & FRM_DEVICE_FAULT_SLACK_STRING)) {
-        if (fit.converged && worst < checks.residual / 2) {
+        if (fit.converged && worst < checks.residual / 2)
             state_.faults &= ~static_cast<std::uint32_t>(FRM_DEVICE_FAULT_SLACK_STRING);
-            ramp_ = 0;
-        }
     }
     state_.faults |= now;
 }
 
 Tensions SpidarG::chosen(const GripWrench& wrench) {
-    if (!displays()) {
-        ramp_ = 0;
-        return configuration_.limits.low;
-    }
+    if (!displays()) return configuration_.limits.low;
     // The tensions hold for the cycle after the lengths were read, in which the strings turn by 1 % at 1 m/s: they are
     // for the middle of it.
     const double step = static_cast<double>(configuration_.period_ns) * 1e-9;
@@ -182,9 +177,7 @@ Tensions SpidarG::chosen(const GripWrench& wrench) {
                          turned(state_.pose.rotation, state_.twist.angular * (step / 2))};
     StringRows rows;
     if (string_rows(configuration_.geometry, ahead, rows)) rows_ = rows;
-    const GripWrench scaled{wrench.force * ramp_, wrench.torque * ramp_};
-    ramp_ = configuration_.ramp > step ? std::fmin(1.0, ramp_ + step / configuration_.ramp) : 1.0;
-    return solver_.solve(rows_, scaled, configuration_.geometry.lever).tensions;
+    return solver_.solve(rows_, wrench, configuration_.geometry.lever).tensions;
 }
 
 GripState SpidarG::exchange(const GripWrench& wrench) {
@@ -193,15 +186,7 @@ GripState SpidarG::exchange(const GripWrench& wrench) {
     GripState out = state_;
     if (!displays()) out.twist = {};
     if (!calibrated_) out.faults |= FRM_DEVICE_FAULT_UNCALIBRATED;
-    out.faults |= deadline_passed_;
-    deadline_passed_ = 0;
     return out;
-}
-
-void SpidarG::rest(bool late) {
-    ramp_ = 0;
-    if (late) deadline_passed_ = FRM_DEVICE_FAULT_DEADLINE;
-    cycle(configuration_.limits.low, nullptr);
 }
 
 bool SpidarG::calibrate() {
@@ -211,8 +196,6 @@ bool SpidarG::calibrate() {
     broken_ = 0;
     state_ = {};
     state_.faults = 0;
-    deadline_passed_ = 0;
-    ramp_ = 0;
     solver_.reset();
     filter_.reset();
     if (!cycle(configuration_.limits.low, nullptr)) return false;
@@ -228,7 +211,6 @@ bool SpidarG::calibrate() {
 }
 
 void SpidarG::stop() {
-    ramp_ = 0;
     solver_.reset();
     cycle(configuration_.limits.low, nullptr);
 }

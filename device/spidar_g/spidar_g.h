@@ -38,13 +38,12 @@ public:
     /// The rotary switch, after begin().
     std::uint32_t rotary_id() const { return Amplifier::rotary_id(reading_); }
 
-    /// One cycle: displays the wrench if all is well, the least tensions if not. Bounded by the transport's timeout.
+    /// One cycle: displays the wrench if all is well, the least tensions if not. Bounded by the transport's timeout. Ramps
+    /// and deadlines are the safety layer's.
     GripState exchange(const GripWrench& wrench);
-    /// One cycle with the least tensions; the next exchanges ramp up again. `late`: the first of them says so.
-    void rest(bool late);
     /// The grip is at the centre, unturned. Clears every latched fault. False if there is no answer.
     bool calibrate();
-    /// The least tensions.
+    /// One cycle with the least tensions. The counters are followed.
     void stop();
 
     /// The reply of the last cycle as it came, with counters, A/D and switches; empty if there was none.
@@ -76,9 +75,7 @@ private:
     Reading reading_;
     GripState state_;
     std::uint32_t broken_ = 0;  ///< bit i: string i has no motor that should pull
-    double ramp_ = 0;           ///< 0 to 1
     std::uint64_t last_ns_ = 0;
-    std::uint32_t deadline_passed_ = 0;
     bool calibrated_ = false;
 };
 

@@ -12,7 +12,7 @@ packages_test=(catch2 python3-pytest)
 packages_optional=(libmujoco-dev libusb-1.0-0-dev libhidapi-dev umockdev libumockdev-dev)
 # shellcheck disable=SC2034
 packages_full=(slurm-wlm munge openmpi-bin clang libomp-dev qemu-user-static g++-aarch64-linux-gnu
-    g++-mingw-w64-x86-64-posix wine wine64 emscripten nodejs)
+    g++-mingw-w64-x86-64-posix wine wine64 emscripten nodejs qemu-system-x86 busybox-static)
 
 # Always the system's Python: the packages above belong to it, and a version manager's python3 in PATH has none of them.
 # shellcheck disable=SC2034
@@ -79,6 +79,29 @@ install_packages() {
     say "installing: ${missing[*]}"
     apt_retry update || die "apt-get update failed"
     apt_retry install -y --no-install-recommends "${missing[@]}" || die "apt-get install failed for: ${missing[*]}"
+}
+
+# unpack_kernel FOLDER: Debian's kernel for a virtual machine (tests/device/kernel.sh). It is unpacked, not installed: this
+# machine goes on with its own. Only what lies in boot/ and the modules of USB and HID are kept. linux-image-cloud-amd64 is
+# smaller, but has no USB.
+unpack_kernel() {
+    local folder=$1 package
+    command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || return 0
+    package=$(apt-cache depends linux-image-amd64 2>/dev/null | awk '$1 == "Depends:" && $2 ~ /^linux-image-[0-9]/ { print $2 }')
+    if [ -z "$package" ]; then
+        say "going on without a kernel for the virtual machine: apt has no linux-image-amd64"
+        return 0
+    fi
+    [ ! -e "$folder/$package" ] || return 0
+    say "unpacking $package in $folder"
+    rm -rf "$folder"
+    mkdir -p "$folder/package"
+    (cd "$folder/package" && { apt-get -q download "$package" || { apt_retry update && apt-get -q download "$package"; }; }) ||
+        die "apt-get download failed for: $package"
+    dpkg-deb --fsys-tarfile "$folder"/package/*.deb | tar -x -C "$folder" --wildcards './boot/vmlinuz-*' \
+        './lib/modules/*/modules.builtin' './lib/modules/*/kernel/drivers/usb/*' './lib/modules/*/kernel/drivers/hid/*'
+    rm -r "$folder/package"
+    touch "$folder/$package"
 }
 
 # What can be had of these; nothing ends if that is none.

@@ -1,6 +1,7 @@
-// haptic_stability NAME=MAP.frm ...: where the loop of hand, device, servo, map and waves is stable, as JSON lines. For
-// each map, hand and rate the force is scaled up until a limit cycle appears, with and without the passivity controller.
-// scripts/haptic-stability draws them.
+// haptic_stability NAME=MAP.frm ...: where the loop of hand, device, servo, map and waves is stable, as JSON lines.
+// scripts/haptic-stability draws them. First the paper's scenes at 500 Hz (maps: sphere, plate, paddle), then borders: for
+// paddle and sphere, each hand and rate the force is scaled up until a limit cycle appears. Each with and without what
+// frm_device_safety_def.passivity turns on.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -9,18 +10,14 @@
 #include <string>
 
 #include "core/map/codec.h"
-#include "tests/support/haptic_loop.h"
+#include "tests/support/haptic_scenes.h"
 
 namespace {
 
 using namespace frm;
 using namespace frm::test;
 
-struct NamedHand {
-    const char* name;
-    Hand hand;
-};
-constexpr NamedHand hands[] = {{"light", {0.1, 1, 50, 2e-4, 2e-3, 0.2}}, {"firm", {0.3, 8, 400, 5e-4, 0.02, 2}}};
+constexpr NamedHand hands[] = {light_hand, firm_hand};
 constexpr double rates[] = {100, 200, 500, 1000, 2000, 5000};
 
 std::shared_ptr<const Map> read(const std::string& path) {
@@ -56,15 +53,44 @@ bool swings(const HapticResult& r, const HapticResult& best) {
     return r.faults != 0 || r.amplitude > 2 * std::min(best.amplitude, 0.001) + 2e-4;
 }
 
+void print_scenes(std::map<std::string, std::shared_ptr<const Map>> maps) {
+    if (!maps.count("sphere") || !maps.count("plate") || !maps.count("paddle")) return;
+    maps["lure"] = map_of(fine_box({0.02, 0.08, 0.03}, 0.01), 30, 2, 32);
+    for (const PaperScene& scene : paper_scenes(maps, FRM_TEST_SAMPLES "/paddle_stroke.json"))
+        for (const NamedHand& hand : {light_hand, firm_hand, stick_hand}) {
+            HapticCase c = held_by(scene.haptic, hand);
+            const HapticResult best = run_haptic_case(ideal(c));
+            c.passivity = false;
+            const HapticResult without = run_haptic_case(c);
+            c.passivity = true;
+            const HapticResult with = run_haptic_case(c);
+            const auto numbers = [](const HapticResult& r) {
+                char text[160];
+                std::snprintf(text, sizeof text, "[%.6g,%.6g,%.6g,%.6g]", r.worst, r.worst_spin, r.mean_size,
+                              r.mean_torque);
+                return std::string(text);
+            };
+            std::printf("{\"scene\":\"%s\",\"hand\":\"%s\",\"best\":%s,\"without\":%s,\"with\":%s}\n",
+                        scene.name.c_str(), hand.name, numbers(best).c_str(), numbers(without).c_str(),
+                        numbers(with).c_str());
+            std::fflush(stdout);
+        }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     if (argc < 2) return std::fprintf(stderr, "usage: haptic_stability NAME=MAP.frm ...\n"), 2;
+    std::map<std::string, std::shared_ptr<const Map>> maps;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
         const std::size_t equals = argument.find('=');
-        const std::string name = argument.substr(0, equals);
-        const auto map = read(argument.substr(equals + 1));
+        maps[argument.substr(0, equals)] = read(argument.substr(equals + 1));
+    }
+    print_scenes(maps);
+    for (const char* const name : {"paddle", "sphere"}) {
+        if (!maps.count(name)) continue;
+        const auto map = maps.at(name);
         for (const NamedHand& hand : hands) {
             std::map<double, HapticResult> best;  // by scale: the same for all rates
             const HapticResult unit = run_haptic_case(ideal(stroke(map, hand.hand, 5000)));
@@ -92,8 +118,8 @@ int main(int argc, char** argv) {
                         "{\"map\":\"%s\",\"hand\":\"%s\",\"mass\":%g,\"damping\":%g,\"stiffness\":%g,\"rate\":%g,"
                         "\"passivity\":%d,\"speed\":0.5,\"unit_force\":%.6g,\"scale\":%.6g,\"ended\":%d,"
                         "\"beyond\":%.6g,\"force\":%.6g,\"gain\":%.4g}\n",
-                        name.c_str(), hand.name, hand.hand.mass, hand.hand.damping, hand.hand.stiffness, rate,
-                        passivity, unit.mean_force, stable, found, left, at.mean_force, at.quick_gain);
+                        name, hand.name, hand.hand.mass, hand.hand.damping, hand.hand.stiffness, rate, passivity,
+                        unit.mean_force, stable, found, left, at.mean_force, at.quick_gain);
                     std::fflush(stdout);
                 }
         }

@@ -101,6 +101,23 @@ struct Rig {
 
 }  // namespace
 
+// A driver need not ramp by itself: SPIDAR-G's does not.
+TEST_CASE("safety: calibrating an engaged device begins its force anew, wherever the poses are then", "[safety]") {
+    Rig rig;
+    rig.start({0, 5, 0});
+    REQUIRE(frm_device_calibrate(rig.device) == FRM_OK);
+    rig.hand.leap = {0.5, 0, 0};  // what was 0.5 m away is the centre now: no fault
+    double last = 0;
+    for (int i = 0; i < 200; ++i) {
+        rig.exchange({0, 5, 0});
+        REQUIRE(size(rig.hand.told.force) <= last + 5 * 0.001 / static_cast<double>(rig.def.ramp_time) + 1e-3);
+        last = size(rig.hand.told.force);
+    }
+    CHECK(std::fabs(last - 5) < 1e-3);
+    CHECK(rig.safety().faults == 0);
+    CHECK(rig.safety().engaged == 1);
+}
+
 TEST_CASE("safety: nothing is felt before a device is engaged", "[safety]") {
     Rig rig;
     rig.run(50, {0, 5, 0});

@@ -274,7 +274,11 @@ TEST_CASE("where the body is that a grip holds", "[servo]") {
     const frm_wrench on_body{{3, -2, 5}, {0.3f, 0.7f, -0.2f}};
     const frm_twist at_grip{{0.3f, -0.4f, 0.9f}, {2, 1, -1}};
     const frm_twist at_body = device::body_twist(a, grip, at_grip);
-    const frm_wrench felt = device::in_device(a, device::about_grip(a, grip, on_body));
+    const Wrench there = device::about_grip(
+        device::lever(a, grip),
+        {{on_body.force.x, on_body.force.y, on_body.force.z}, {on_body.torque.x, on_body.torque.y, on_body.torque.z}});
+    const frm_wrench felt = device::in_device(
+        a, {{there.force.x, there.force.y, there.force.z}, {there.torque.x, there.torque.y, there.torque.z}});
     const auto power = [](const frm_wrench& w, const frm_twist& t) {
         return w.force.x * t.linear.x + w.force.y * t.linear.y + w.force.z * t.linear.z + w.torque.x * t.angular.x +
                w.torque.y * t.angular.y + w.torque.z * t.angular.z;

@@ -40,7 +40,6 @@ struct Rig {
         body_def.map = lib.map();
         REQUIRE(frm_body_create(world, &body_def, &body) == FRM_OK);
         Json json = Json::parse(std::ifstream(FRM_TEST_SAMPLES "/devices/SpidarG6X3R.json"));
-        json["ramp"] = 0.02;
         json["hand"] = {{"stiffness", 2000},           {"damping", 30},
                         {"turning_stiffness", 3},      {"sine", {0.02, 0.01, 0.02}},
                         {"turning", {0.2, 0.3, -0.1}}, {"frequency", 2}};

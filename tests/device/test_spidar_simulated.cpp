@@ -58,9 +58,7 @@ TEST_CASE("the motors are told the wrench that is said to be achieved", "[spidar
     s.hand().place({});
     REQUIRE(s.device.calibrate());
     const GripWrench asked{{3, -2, 1}, {0.02, 0.05, -0.03}};
-    GripState state = s.device.exchange(asked);
-    CHECK(length(state.achieved.force) < 0.1);  // it ramps up
-    s.run(600, asked);
+    GripState state = s.run(600, asked);
     double fastest = 0;
     for (int k = 0; k < 300; ++k) {
         const GripPose before = s.hand().pose();
@@ -170,7 +168,7 @@ TEST_CASE("strings and encoders that fail are noticed", "[spidar_g]") {
     CHECK(named_broken >= 6);
 }
 
-TEST_CASE("a slack string that tightens lets forces ramp up again", "[spidar_g]") {
+TEST_CASE("a slack string that tightens lets forces come again", "[spidar_g]") {
     SimulatedSpidar s;
     REQUIRE(s.device.calibrate());
     REQUIRE(s.run(800).faults == 0);

@@ -1,6 +1,6 @@
 // Stability in the hand, on maps from a formula. The chart over all rates is docs/haptic-stability.md, of the baked maps.
 #include "tests/support/catch.h"
-#include "tests/support/haptic_loop.h"
+#include "tests/support/haptic_scenes.h"
 
 using namespace frm;
 using namespace frm::test;
@@ -49,7 +49,11 @@ TEST_CASE("a stroke that is stable by itself is left as it is", "[stability]") {
         const HapticResult without = run_haptic_case(stroke(rate, firm, 0.1f, false));
         CHECK(with.faults == 0);
         CHECK(with.quick_gain == 1);
-        CHECK(with.amplitude == without.amplitude);
+        // At 100 Hz a grip of 0.1 kg would not bear all of it, and the servo does not know that this one is heavier.
+        if (rate > 100)
+            CHECK(with.amplitude == without.amplitude);
+        else
+            CHECK(std::fabs(with.mean_force - without.mean_force) < 0.01 * without.mean_force);
         CHECK(with.amplitude < 2e-4);
         CHECK(with.mean_force > 0.5);
     }
@@ -110,4 +114,49 @@ TEST_CASE("the passivity controller keeps its hands off weight and buoyancy", "[
     const HapticResult r = run_haptic_case(c);
     CHECK(r.quick_gain == 1);
     CHECK(r.damped == 0);
+}
+
+namespace {
+
+std::vector<PaperScene> scenes_of_formulas() {
+    // A paddle's blade, three quarters of a metre below the hand.
+    bake::Surface blade = fine_box({0.16, 0.02, 0.45}, 0.06);
+    for (Vec3d& v : blade.vertices) v.z -= 0.75;
+    return paper_scenes({{"sphere", map_of(icosphere(0.05, 2), 26, 2, 32)},
+                         {"plate", map_of(fine_box({0.08, 0.01, 0.3}, 0.04), 20, 2, 32)},
+                         {"lure", map_of(fine_box({0.02, 0.08, 0.03}, 0.02), 30, 2, 32)},
+                         {"paddle", map_of(blade, 24, 2, 32)}},
+                        FRM_TEST_SAMPLES "/paddle_stroke.json");
+}
+
+}  // namespace
+
+TEST_CASE("no limit cycle at 500 Hz in the paper's scenes", "[stability]") {
+    for (const PaperScene& scene : scenes_of_formulas()) {
+        const bool paddle = scene.name.find("paddle") == 0, whole = scene.haptic.torque_scale == 1;
+        for (const NamedHand& hand : {light_hand, firm_hand, stick_hand}) {
+            // No hand holds 10 N m by a ball of 5 cm: even in the best loop it is thrown about.
+            if (paddle && whole && hand.name != std::string("stick")) continue;
+            const HapticCase c = held_by(scene.haptic, hand);
+            const HapticResult r = run_haptic_case(c), best = run_haptic_case(ideal(c));
+            INFO(scene.name << ", " << hand.name << ": " << r.worst << " m, " << r.worst_spin << " rad; at best "
+                            << best.worst << " m, " << best.worst_spin << " rad");
+            CHECK(r.worst < 2 * best.worst + limit_cycle);
+            CHECK(r.worst_spin < 2 * best.worst_spin + spin_limit_cycle);
+            CHECK(r.faults == 0);
+        }
+    }
+}
+
+// With the passivity controller alone, as it was, it swung up in translation and rotation.
+TEST_CASE("the paddle's stroke swings without what the servo takes off its drag", "[stability]") {
+    for (const PaperScene& scene : scenes_of_formulas()) {
+        if (scene.name.find("paddle") != 0) continue;
+        HapticCase c = held_by(scene.haptic, firm_hand);
+        c.passivity = false;
+        const HapticResult r = run_haptic_case(c);
+        INFO(scene.name << ": " << r.worst << " m, " << r.worst_spin << " rad");
+        CHECK(r.worst > 0.05);
+        CHECK(r.worst_spin > 1);
+    }
 }

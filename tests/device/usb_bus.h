@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/device/usb_descriptors.h"
 #include "tests/device/usbfs_shim.h"
 #include "tests/support/catch.h"
 
@@ -37,7 +38,8 @@ public:
             "E: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=%03u\nE: MAJOR=189\nE: MINOR=%u\n"
             "A: busnum=1\\n\nA: devnum=%u\\n\nA: bConfigurationValue=1\\n\nA: speed=480\\n\n"
             "A: idVendor=0cec\\n\nA: idProduct=%04x\\n\nH: descriptors=%s\n",
-            address, node, node, address, address - 1, address, product, descriptors(product).c_str());
+            address, node, node, address, address - 1, address, product,
+            hexadecimal(usb_descriptors(0x0cec, product)).c_str());
         add(text);
         const std::string path = std::string("/dev/") + node;
         function<void(const char*, int, const char*, unsigned)>("frm_shim_plug")(path.c_str(), 0, amplifier, rotary);
@@ -54,7 +56,7 @@ public:
             "A: idVendor=04d8\\n\nA: idProduct=003f\\n\nA: bcdDevice=0100\\n\nA: manufacturer=frm\\n\nA: "
             "product=mock\\n\n"
             "A: bConfigurationValue=1\\n\nA: speed=12\\n\nH: descriptors=%s\n",
-            usb.c_str(), address, address, descriptors(0x003F).c_str());
+            usb.c_str(), address, address, hexadecimal(usb_descriptors(0x04d8, 0x003F)).c_str());
         add(text);
         const std::string interface = usb + "/1-" + std::to_string(address) + ":1.0";
         add("P: " + interface + "\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=00\\n\n");
@@ -101,66 +103,11 @@ private:
         FAIL("umockdev: " << what << "\n" << text);
     }
 
-    /// A device of one interface with the two bulk endpoints, in hexadecimal.
-    static std::string descriptors(unsigned product) {
-        const std::vector<unsigned> bytes = {18,
-                                             1,
-                                             0x00,
-                                             0x02,
-                                             0xFF,
-                                             0,
-                                             0,
-                                             64,
-                                             0xEC,
-                                             0x0C,
-                                             product & 0xFF,
-                                             product >> 8,
-                                             0x00,
-                                             0x01,
-                                             0,
-                                             0,
-                                             0,
-                                             1,  // device
-                                             9,
-                                             2,
-                                             32,
-                                             0,
-                                             1,
-                                             1,
-                                             0,
-                                             0x80,
-                                             50,  // configuration
-                                             9,
-                                             4,
-                                             0,
-                                             0,
-                                             2,
-                                             0xFF,
-                                             0,
-                                             0,
-                                             0,  // interface
-                                             7,
-                                             5,
-                                             0x02,
-                                             2,
-                                             0x00,
-                                             0x02,
-                                             0,
-                                             7,
-                                             5,
-                                             0x86,
-                                             2,
-                                             0x00,
-                                             0x02,
-                                             0};  // bulk, 512
-        return hexadecimal(bytes);
-    }
-
-    static std::string hexadecimal(const std::vector<unsigned>& bytes) {
+    static std::string hexadecimal(const std::vector<std::uint8_t>& bytes) {
         std::string out;
-        for (const unsigned b : bytes) {
+        for (const std::uint8_t b : bytes) {
             char digits[3];
-            std::snprintf(digits, sizeof digits, "%02X", b & 0xFFu);
+            std::snprintf(digits, sizeof digits, "%02X", static_cast<unsigned>(b));
             out += digits;
         }
         return out;

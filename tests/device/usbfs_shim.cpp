@@ -21,7 +21,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <deque>
 #include <map>
@@ -30,27 +29,24 @@
 #include <string>
 #include <thread>
 
-#include "device/simulated/simulated_amplifier.h"
+#include "tests/device/simulated_board.h"
 
 namespace {
 
-using frm::simulated::SimulatedAmplifier;
-using frm::spidar_g::AmplifierKind;
 using frm::spidar_g::Packet;
 
-/// One plug: the amplifier, whatever has it open, and what is to go wrong with it.
+/// One plug: the board, and whatever has it open.
 struct Plug {
-    std::string path;
-    bool hid = false;
-    std::unique_ptr<SimulatedAmplifier> amplifier;
-    int fault = FRM_SHIM_GOOD;
-    std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
+    Plug(bool on_hid, const char* amplifier, unsigned rotary) : hid(on_hid), board(amplifier, rotary) {}
+
+    bool hid;
+    frm::test::SimulatedBoard board;
     bool gone = false;
     // usbfs
     int ours = -1, theirs = -1;
     std::deque<usbdevfs_urb*> waiting, finished;
     // hidraw
-    std::thread board;
+    std::thread answers;
 };
 
 std::mutex& mutex() {
@@ -74,15 +70,6 @@ Function next(const char* name) {
 int real_close(int fd) {
     static const auto f = next<int (*)(int)>("close");
     return f(fd);
-}
-
-/// The hand lives in the machine's own time, but for pauses that would throw it off.
-bool next_reply(Plug& plug, Packet& reply) {
-    const auto now = std::chrono::steady_clock::now();
-    const double dt = std::min(std::chrono::duration<double>(now - plug.last).count(), 0.01);
-    if (!plug.amplifier->has_reply()) return false;
-    plug.last = now;
-    return plug.amplifier->reply(reply, std::max(dt, 1e-6));
 }
 
 void fill(Plug& plug) {
@@ -120,12 +107,10 @@ void serve(const std::shared_ptr<Plug>& plug, int fd) {
         if (got <= 0) break;
         const std::lock_guard<std::mutex> lock(mutex());
         // hidapi writes the report's number first, 0 for none; the board sees what follows.
-        plug->amplifier->receive(report + 1, static_cast<std::size_t>(got - 1));
+        plug->board.amplifier.receive(report + 1, static_cast<std::size_t>(got - 1));
         Packet reply;
-        while (next_reply(*plug, reply)) {
-            reply.size = std::max<std::size_t>(reply.size, FRM_SHIM_REPORT);
-            if (plug->fault == FRM_SHIM_SHORT) reply.size = 8;
-            if (plug->fault != FRM_SHIM_SILENT) send(fd, reply.bytes.data(), reply.size, MSG_NOSIGNAL);
+        while (plug->board.next_report(reply)) {
+            if (plug->board.fault != FRM_SHIM_SILENT) send(fd, reply.bytes.data(), reply.size, MSG_NOSIGNAL);
         }
     }
     real_close(fd);
@@ -137,7 +122,7 @@ int open_hid(const std::shared_ptr<Plug>& plug) {
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return -1;
     plug->ours = ends[0], plug->theirs = ends[1];
     opened()[plug->theirs] = plug;
-    plug->board = std::thread(serve, plug, ends[0]);
+    plug->answers = std::thread(serve, plug, ends[0]);
     return plug->theirs;
 }
 
@@ -158,17 +143,17 @@ void finish(Plug& plug, usbdevfs_urb* urb, int status, int length) {
 
 /// In-transfers that wait and have an answer.
 void answer(Plug& plug) {
-    while (!plug.waiting.empty() && plug.fault != FRM_SHIM_SILENT) {
+    while (!plug.waiting.empty() && plug.board.fault != FRM_SHIM_SILENT) {
         usbdevfs_urb* urb = plug.waiting.front();
-        if (plug.fault == FRM_SHIM_STALL) {
+        if (plug.board.fault == FRM_SHIM_STALL) {
             plug.waiting.pop_front();
             finish(plug, urb, -EPIPE, 0);
             continue;
         }
         Packet reply;
-        if (!next_reply(plug, reply)) return;
+        if (!plug.board.next_reply(reply)) return;
         plug.waiting.pop_front();
-        if (plug.fault == FRM_SHIM_SHORT) reply.size /= 2;
+        if (plug.board.fault == FRM_SHIM_SHORT) reply.size /= 2;
         if (reply.size > static_cast<std::size_t>(urb->buffer_length)) {
             finish(plug, urb, -EOVERFLOW, 0);
             continue;
@@ -189,15 +174,15 @@ int usb_ioctl(Plug& plug, unsigned long request, void* argument) {
         case USBDEVFS_DISCONNECT_CLAIM:
             return 0;
         case USBDEVFS_CLEAR_HALT:
-            if (*static_cast<unsigned*>(argument) & 0x80) plug.amplifier->clear();
+            if (*static_cast<unsigned*>(argument) & 0x80) plug.board.amplifier.clear();
             return 0;
         case USBDEVFS_SUBMITURB: {
             auto* urb = static_cast<usbdevfs_urb*>(argument);
             if (urb->type != USBDEVFS_URB_TYPE_BULK || (urb->endpoint != 0x02 && urb->endpoint != 0x86))
                 return errno = EINVAL, -1;
             if (urb->endpoint == 0x02) {
-                plug.amplifier->receive(static_cast<const std::uint8_t*>(urb->buffer),
-                                        static_cast<std::size_t>(urb->buffer_length));
+                plug.board.amplifier.receive(static_cast<const std::uint8_t*>(urb->buffer),
+                                             static_cast<std::size_t>(urb->buffer_length));
                 finish(plug, urb, 0, urb->buffer_length);
             } else {
                 plug.waiting.push_back(urb);
@@ -249,21 +234,15 @@ std::shared_ptr<Plug> plug_of(int fd) {
 #define EXPORTED extern "C" __attribute__((visibility("default")))
 
 EXPORTED void frm_shim_plug(const char* path, int hid, const char* amplifier, unsigned rotary) {
-    auto configuration = frm::spidar_g::load_configuration(nullptr);
-    if (std::string(amplifier) == "simple") configuration.amplifier = AmplifierKind::simple;
-    auto plug = std::make_shared<Plug>();
-    plug->path = path;
-    plug->hid = hid != 0;
-    plug->amplifier = std::make_unique<SimulatedAmplifier>(configuration);
-    plug->amplifier->rotary = rotary;
+    auto plug = std::make_shared<Plug>(hid != 0, amplifier, rotary);
     const std::lock_guard<std::mutex> lock(mutex());
-    plugs()[path] = plug;
+    plugs()[path] = std::move(plug);
 }
 
 EXPORTED void frm_shim_set_fault(const char* path, int fault) {
     const std::lock_guard<std::mutex> lock(mutex());
     Plug& plug = *plugs().at(path);
-    plug.fault = fault;
+    plug.board.fault = fault;
     if (fault == FRM_SHIM_GONE) {
         plug.gone = true;
         while (!plug.waiting.empty()) {
@@ -286,16 +265,12 @@ EXPORTED void frm_shim_set_fault(const char* path, int fault) {
 
 EXPORTED void frm_shim_centre(const char* path) {
     const std::lock_guard<std::mutex> lock(mutex());
-    plugs().at(path)->amplifier->hand().place({});
+    plugs().at(path)->board.amplifier.hand().place({});
 }
 
 EXPORTED void frm_shim_look(const char* path, frm_shim_view* view) {
     const std::lock_guard<std::mutex> lock(mutex());
-    Plug& plug = *plugs().at(path);
-    view->cycles = plug.amplifier->cycles();
-    for (int i = 0; i < 8; ++i) view->tensions[i] = plug.amplifier->tensions()[static_cast<std::size_t>(i)];
-    const auto& p = plug.amplifier->hand().pose().position;
-    view->position[0] = p.x, view->position[1] = p.y, view->position[2] = p.z;
+    plugs().at(path)->board.look(*view);
 }
 
 EXPORTED int open(const char* path, int flags, ...) {
@@ -348,19 +323,19 @@ EXPORTED int ioctl(int fd, unsigned long request, ...) noexcept {
 }
 
 EXPORTED int close(int fd) {
-    std::thread board;
+    std::thread answers;
     {
         const std::lock_guard<std::mutex> lock(mutex());
         if (const auto plug = plug_of(fd)) {
             opened().erase(fd);
             if (plug->hid)
-                board = std::move(plug->board);
+                answers = std::move(plug->answers);
             else if (plug->ours >= 0)
                 real_close(plug->ours);
             plug->ours = plug->theirs = -1;
         }
     }
     const int result = real_close(fd);
-    if (board.joinable()) board.join();
+    if (answers.joinable()) answers.join();
     return result;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "device/servo/loop.h"
@@ -24,11 +25,17 @@ struct HapticCase {
     float mass = 0;  ///< kg, of the body's weight
     double seconds = 2;
     std::int32_t cells = 120;  ///< of the water, 25 mm each
+    /// Where the hand leads the grip by time, instead of straight on: a place, and a rotation vector.
+    std::function<Vec3d(double)> path, turning;
+    float grip_mass = 0.1f, grip_inertia = 5e-5f;  ///< what the safety layer is told of the grip; its defaults
 };
 
 struct HapticResult {
     double amplitude = 0;   ///< m (rad where the case spins), peak to peak, of the quick motion in the last half second
     double mean_force = 0;  ///< N, that the device displayed then, against the motion
+    /// Peak to peak, of the quick motion in the half second that had most of it, along the axis that had most: m, rad.
+    double worst = 0, worst_spin = 0;
+    double mean_size = 0, mean_torque = 0;  ///< N and N m, of what was displayed, after the ramp
     double quick_gain = 1;
     std::uint64_t damped = 0;
     std::uint32_t faults = 0;
@@ -49,6 +56,18 @@ inline double quick_amplitude(const std::vector<double>& series, std::size_t win
     return high - low;
 }
 
+/// The largest of quick_amplitude in half seconds, each a tenth of a second after the one before; the first half second,
+/// in which forces ramp up, does not count.
+inline double worst_amplitude(const std::vector<double>& series, double rate) {
+    const auto window = static_cast<std::size_t>(0.1 * rate) / 2 * 2, span = static_cast<std::size_t>(0.5 * rate);
+    double worst = 0;
+    for (std::size_t at = span; at + span <= series.size(); at += span / 5) {
+        const auto from = series.begin() + static_cast<std::ptrdiff_t>(at);
+        worst = std::max(worst, quick_amplitude({from, from + static_cast<std::ptrdiff_t>(span)}, window));
+    }
+    return worst;
+}
+
 inline HapticResult run_haptic_case(HapticCase c) {
     c.device.rate = c.rate;
     HandDevice hand(c.device);
@@ -56,6 +75,8 @@ inline HapticResult run_haptic_case(HapticCase c) {
     hand.spin_target = [&c](double t) { return Vec3d(0, 0, c.spin * t); };
     hand.place(c.start, {0, c.speed, 0});
     hand.place_spin({}, {0, 0, c.spin});
+    if (c.path) hand.target = c.path, hand.place(c.path(0));
+    if (c.turning) hand.spin_target = c.turning, hand.place_spin(c.turning(0), {});
     World world = world_of(WorldDef());
     world.create_water(water_of(c.cells, 0.025f, 0.8f));
     BodyDef held = body_of(c.map, c.start);
@@ -67,6 +88,7 @@ inline HapticResult run_haptic_case(HapticCase c) {
     safety.ramp_time = 0.3f;
     safety.deadline_ns = 10'000'000'000;
     safety.max_speed = safety.max_spin = 1000;  // what swings is to swing
+    safety.grip_mass = c.grip_mass, safety.grip_inertia = c.grip_inertia;
     device.set_safety(safety);
     device.prepare();
     const api::Axes axes(FRM_AXES_Z_UP_RIGHT);
@@ -78,16 +100,30 @@ inline HapticResult run_haptic_case(HapticCase c) {
     requests.input.force_scale = c.force_scale;
     requests.input.torque_scale = c.torque_scale;
     const int ticks = static_cast<int>(c.seconds * c.rate), last = static_cast<int>(0.6 * c.rate);
-    std::vector<double> series;
+    std::vector<double> series, place[3], turn[3];
     HapticResult result;
     for (int i = 0; i < ticks; ++i) {
         if (!loop.tick(requests)) break;
+        for (int k = 0; k < 3; ++k) {
+            place[k].push_back(hand.position()[k]);
+            turn[k].push_back(hand.rotation()[k]);
+        }
+        if (i > ticks / 8) {
+            const frm_wrench& w = loop.state().displayed;
+            result.mean_size += static_cast<double>(length(Vec3f(w.force.x, w.force.y, w.force.z))) / (ticks * 7 / 8);
+            result.mean_torque +=
+                static_cast<double>(length(Vec3f(w.torque.x, w.torque.y, w.torque.z))) / (ticks * 7 / 8);
+        }
         if (i < ticks - last) continue;
         series.push_back(c.spin != 0 ? hand.rotation().z : hand.position().y);
         result.mean_force -= static_cast<double>(loop.state().displayed.force.y) / last;
     }
     // Means over 0.1 s: 10 Hz and more are quick, 4 Hz by a half.
     result.amplitude = quick_amplitude(series, static_cast<std::size_t>(0.1 * c.rate) / 2 * 2);
+    for (int k = 0; k < 3; ++k) {
+        result.worst = std::max(result.worst, worst_amplitude(place[k], c.rate));
+        result.worst_spin = std::max(result.worst_spin, worst_amplitude(turn[k], c.rate));
+    }
     const frm_device_safety_state s = device.safety();
     result.quick_gain = static_cast<double>(c.spin != 0 ? s.quick_spin_gain : s.quick_gain);
     result.damped = s.damped;
