@@ -97,9 +97,9 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
     }
 }
 
-Push push_on_water(Footprint& footprint, float factor) {
+Push push_on_water(const Footprint& footprint) {
     const std::int32_t n = footprint.size();
-    return {footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), factor};
+    return {footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), footprint.push};
 }
 
 float share_of_push(const Footprint& footprint, const Field& water, float dt, double work) {
@@ -117,10 +117,10 @@ float share_of_push(const Footprint& footprint, const Field& water, float dt, do
     return taken > most ? static_cast<float>(most / taken) : 1.0f;
 }
 
-void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps, float factor) {
+void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps) {
     if (!footprint.active()) return;
     const std::int32_t n = footprint.size();
-    const Push push{footprint.pressure(), n, n, footprint.pressed(), 0, 0, factor};
+    const Push push{footprint.pressure(), n, n, footprint.pressed(), 0, 0, footprint.push};
     footprint.own.advance(dt, gravity, steps, &push, footprint.pressed().empty() ? 0 : 1, 1);
 }
 

@@ -16,14 +16,14 @@ void displace_water(Footprint& footprint, Field& water, float late = 0);
 /// `origin` its origin in the footprint's window; the velocity is taken at the height `z` above the body's origin.
 void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, const Vec3f& angular, float z);
 
-/// The push by the pressure on the body's upper side (Eq. 10), for each step; factor = dt / density.
-Push push_on_water(Footprint& footprint, float factor);
+/// The push by the pressure on the body's upper side (Eq. 10), for each step, as the footprint's `push` says.
+Push push_on_water(const Footprint& footprint);
 /// The share of that push which the water takes: all of it, but no more energy in a step of `dt` than `work`, J, that the
 /// body's drag does on the water in it. The push follows from the velocity that the water has, so that a body would else
 /// drive the waves it meets, one at rest too.
 float share_of_push(const Footprint& footprint, const Field& water, float dt, double work);
 /// The same push, and the steps, of the body's own waves.
-void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps, float factor);
+void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps);
 
 /// The body is taken out: the water falls by the body's thickness.
 void withdraw_body(Footprint& footprint, Field& water);

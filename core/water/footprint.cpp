@@ -24,15 +24,16 @@ constexpr double widest_per_size = 0.44;
 /// So many that the widest is as wide in metres however small the cells are, as far as the largest window goes.
 int levels_for(const FieldDef& water, float radius, double volume) {
     const double wanted =
-        std::min(widest_per_size * std::cbrt(volume), static_cast<double>(widths_per_depth * water.depth)) /
-        static_cast<double>(water.cell);
+        widest_per_size * widest_per_size * widest_per_size * volume;  // a cube: std::cbrt is not exact
+    const auto suffices = [&](int levels) {
+        const double width = static_cast<double>(Pyramid::width_of[levels - 1] * water.cell);
+        return width * width * width >= wanted || width >= static_cast<double>(widths_per_depth * water.depth);
+    };
     const auto fits = [&](int levels) {
         return std::ceil(radius / water.cell) <= static_cast<float>(largest_window / 2 - margin_of(levels));
     };
     int levels = Pyramid::fewest_levels;
-    while (levels < Pyramid::most_levels && static_cast<double>(Pyramid::width_of[levels - 1]) < wanted &&
-           fits(levels + 1))
-        ++levels;
+    while (levels < Pyramid::most_levels && !suffices(levels) && fits(levels + 1)) ++levels;
     return levels;
 }
 

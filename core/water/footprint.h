@@ -71,12 +71,14 @@ public:
         return thickness_before_.data() + static_cast<std::ptrdiff_t>(j) * size();
     }
     const float* pressure() const { return pressure_.data(); }
+    const GridOrigin& body() const { return body_; }  ///< its origin in the water
     GridOrigin body_in_window() const;
 
     /// Ends a tick: this tick's thickness is the next one's thickness before.
     void end();
     void hash(StateHash& hash) const;
 
+    float push = 0;     ///< of this tick's pressure: what each step adds for its gradient (Push::factor)
     bool first = true;  ///< no tick yet: a body that is put into the water makes no splash
     /// How much more of the volume is even over all of the water than in the tick before, in cells times metres.
     double rest_change() const { return kept_ ? 0.0 : rest_ - rest_before_; }

@@ -141,7 +141,7 @@ SurfaceView World::view_from(const Body& body, float dt, std::uint32_t steps) co
     if (water_) {
         const FieldDef& field = water_->def().field;
         view.field = &water_->field;
-        view.origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
+        view.origin = body.footprint->body();
         view.cells_per_metre = 1.0f / field.cell;
         view.fastest = std::sqrt(def_.fluid.gravity * field.depth);
         view.ahead = behind_;
@@ -311,7 +311,8 @@ void World::step_waves(const WaveTime& waves) {
             share =
                 share_of_push(*body->footprint, field, step, static_cast<double>(power) * static_cast<double>(step));
         }
-        pushes_.push_back(push_on_water(*body->footprint, push * share));
+        body->footprint->push = push * share;
+        pushes_.push_back(push_on_water(*body->footprint));
     }
     // Where the velocity inside a body is forced, that is before each step.
     for (std::uint32_t n = 0; n < (displaces ? 1 : waves.steps); ++n) {
@@ -322,11 +323,7 @@ void World::step_waves(const WaveTime& waves) {
                                body->wet_height);
         field.advance(step, gravity, steps, pushes_.data(), pushes_.size(), threads_);
         if (!own_waves) continue;
-        std::size_t next = water_->pressure() ? 1 : 0;
-        for (const auto& body : bodies_) {
-            const bool presses = !body->footprint->pressed().empty();
-            advance_own(*body->footprint, step, gravity, steps, presses ? pushes_[next++].factor : 0.0f);
-        }
+        for (const auto& body : bodies_) advance_own(*body->footprint, step, gravity, steps);
     }
 }
 
