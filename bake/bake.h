@@ -27,6 +27,8 @@ double region_error_of(Quality quality);
 
 /// Of the error of rounding the tables, share of the largest force.
 constexpr double kRoundingBudget = 5e-3;
+/// A mean drag that is less sure than this is told.
+constexpr double kNotedUncertainty = 0.1;
 
 struct BakeOptions {
     std::string mesh;  ///< path of a .glb or .gltf

@@ -45,7 +45,7 @@ Preset preset(Quality quality) {
 
 constexpr double overlap_share = 0.25;      ///< of the period, faded into its beginning
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
-constexpr double most_more = 0.5;           ///< directions added at most, as a share of the first ones
+constexpr double most_more = 1.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
 constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5, most_patches = 1000;
@@ -246,7 +246,8 @@ bool extend_plan(BakePlan& plan, const std::vector<TaskResult>& results) {
         solved.push_back(solved_direction(task.flow.direction, means_of(results[k]), plan.symmetry.centre));
     }
     if (solved.size() >= plan.most_directions) return false;
-    const KnownForces known(plan.symmetry, solved, plan.reference_length, plan.spacing);
+    const ShapePressure shape(plan.surface, plan.regions, plan.symmetry.centre);
+    const KnownForces known(plan.symmetry, solved, plan.reference_length, plan.spacing, &shape);
     const DirectionErrors errors = known.errors();
     if (errors.rms <= plan.budget.rms && errors.worst <= plan.budget.worst) return false;
     const std::vector<Vec3d> more = known.next(std::min<std::size_t>(round_size, plan.most_directions - solved.size()));

@@ -37,7 +37,7 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
                      "note: directions are predicted from each other to %.1f %% rms and %.1f %% at worst, not the %.0f "
                      "and %.0f %% of this quality: take a higher --quality, --resolution or --directions\n",
                      100 * between.rms, 100 * between.worst, 100 * plan.budget.rms, 100 * plan.budget.worst);
-    if (worst > kNotedUncertainty)
+    if (worst > bake::kNotedUncertainty)
         std::fprintf(
             stderr,
             "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",

@@ -18,9 +18,6 @@ void require_map_place(const std::string& out, bool named, bool force);
 /// NAME.frm in the current folder, for a mesh NAME.glb anywhere.
 std::string default_map(const std::string& mesh);
 
-/// A mean drag that is less sure than this is told.
-constexpr double kNotedUncertainty = 0.1;
-
 struct BakeRun {
     double seconds = 0;        ///< wall time of this run
     double updates = 0;        ///< cell updates done in this run

@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "bake/regions/region_error.h"
+#include "bake/report_json.h"
 #include "bake/tasks/forces.h"
 #include "cli/bake_output.h"
 #include "cli/file.h"
@@ -51,9 +51,6 @@ private:
     std::string bytes_;
     std::size_t first_ = 0;
 };
-
-/// Zero is no budget.
-double asked(double budget) { return budget > 0 ? budget : none; }
 
 Json body_of(const bake::BakePlan& plan) {
     const bake::SurfaceProperties shape = bake::measure(plan.surface);
@@ -105,30 +102,6 @@ Json map_of(const MadeMap& made) {
            {"spin_rate", made.plan.spin_rate}};
     if (map.has_added_mass) j["added_mass"] = map.added_mass;
     return j;
-}
-
-/// All are shares; null where it is not known or not asked for.
-void add_errors(Json& j, const MadeMap& made) {
-    const bake::BakePlan& plan = made.plan;
-    const bake::RegionErrors regions = bake::RegionJudge(plan.surface).measure(plan.regions);
-    // A single flow, all round by symmetry, has no others to be predicted from.
-    const bake::DirectionErrors& between = made.report.direction_errors;
-    const bool known = std::count_if(made.report.flows.begin(), made.report.flows.end(),
-                                     [](const auto& flow) { return flow.left_out >= 0; }) > 0;
-    j["errors"] = {{"direction_rms", known ? between.rms : none},
-                   {"direction_worst", known ? between.worst : none},
-                   {"rounding", made.map.facts.quantisation_error},
-                   {"uncertainty", made.report.uncertainty},
-                   {"added_mass", made.map.has_added_mass ? made.report.added_mass_error : none},
-                   {"regions", regions.whole},
-                   {"wet_ratio", regions.wet_ratio},
-                   {"velocity", regions.velocity},
-                   {"arm", regions.arm}};
-    j["budgets"] = {{"direction_rms", asked(plan.budget.rms)},
-                    {"direction_worst", asked(plan.budget.worst)},
-                    {"rounding", bake::kRoundingBudget},
-                    {"uncertainty", kNotedUncertainty},
-                    {"regions", plan.options.sources ? none : bake::region_error_of(plan.options.quality)}};
 }
 
 /// The one in which the force swings most.
@@ -264,7 +237,7 @@ void BakePage::write(const MadeMap& made) {
            {"options", options_of(made.plan)},
            {"body", body_of(made.plan)},
            {"map", map_of(made)}};
-    add_errors(j, made);
+    j.update(bake::errors_json(made.plan, made.map, made.report));
     j["surface"] = surface_of(data, made.map);
     add_sphere(j, data, made);
     for (std::size_t k = 0; k < made.results.size(); ++k) j["flows"].push_back(flow_of(data, made, k));

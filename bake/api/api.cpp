@@ -232,6 +232,13 @@ frm_status FRM_CALL frm_bake_get_map(frm_bake bake, void* data, uint64_t capacit
     });
 }
 
+frm_status FRM_CALL frm_bake_get_report(frm_bake bake, char* text, uint64_t capacity, uint64_t* size) {
+    return with(bake, [&](Job& job) {
+        const std::string& report = job.report();
+        api::write_text(report.c_str(), report.size(), text, capacity, size);
+    });
+}
+
 frm_status FRM_CALL frm_bake_write_map(frm_bake bake, const char* path) {
     return with(bake, [&](Job& job) {
         api::require_pointer(path, "path");

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "bake/report_json.h"
 #include "bake/tasks/durable.h"
 #include "core/error.h"
 #include "core/map/codec.h"
@@ -56,6 +57,7 @@ void Job::plan(const BakeOptions& options, const std::string& work, frm_bake_pla
     plan_.reset();
     first_.reset();
     map_.clear();
+    report_.clear();
     {
         const std::lock_guard<std::mutex> lock(lock_);
         stage_ = FRM_BAKE_NEW;
@@ -133,8 +135,9 @@ void Job::run() {
             return !cancelled_;
         });
         BakeReport report;
-        const std::vector<std::uint8_t> bytes = encode_map(*make_map(*plan_, results, report));
-        map_ = bytes;
+        const std::unique_ptr<Map> map = make_map(*plan_, results, report);
+        map_ = encode_map(*map);
+        report_ = report_text(*plan_, *map, report);
         {
             const std::lock_guard<std::mutex> lock(lock_);
             state_ = {};
@@ -184,6 +187,11 @@ const std::vector<std::uint8_t>& Job::map() {
     const std::lock_guard<std::mutex> lock(lock_);
     if (stage_ != FRM_BAKE_DONE) throw Error(FRM_ERROR_STATE, "there is no map: the bake is not done");
     return map_;
+}
+
+const std::string& Job::report() {
+    map();
+    return report_;
 }
 
 void Job::write(const std::string& path) {

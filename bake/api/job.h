@@ -25,6 +25,7 @@ public:
     void wait();
     frm_bake_progress progress();
     const std::vector<std::uint8_t>& map();
+    const std::string& report();
     void write(const std::string& path);
     void clear();
     std::string notes();
@@ -43,6 +44,7 @@ private:
     std::string work_;                        ///< the folder above the store's
     std::unique_ptr<Store> store_;
     std::vector<std::uint8_t> map_;
+    std::string report_;
     std::thread thread_;
     std::atomic<bool> cancelled_{false};
 

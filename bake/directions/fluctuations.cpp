@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "bake/series/align.h"
@@ -58,6 +59,49 @@ Fluctuation one_direction(const TaskResult& result, const Transfer& transfer, st
     return out;
 }
 
+/// How strongly the whole force swings, as the map will have it: of the periodic series. A record swings more, by what is
+/// slower than the period, of which it has not one cycle: what is left of its start, above all.
+double strength_of(const TaskResult& result, PeriodicSpec spec) {
+    spec.threshold = 0;
+    const std::vector<Vec3d> force = whole_force(result);
+    const Seam seam = make_seam(force, spec.period);
+    double square = 0;
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float> signal;
+        for (const Vec3d& f : force) signal.push_back(static_cast<float>(f[c]));
+        for (const float v : make_periodic(signal, seam, spec).fluctuation)
+            square += static_cast<double>(v) * static_cast<double>(v) / spec.samples;
+    }
+    return std::sqrt(square);
+}
+
+/// The strengths over directions, by a fit of their logarithms: from one direction to another they change by factors.
+class Strengths {
+public:
+    Strengths(const std::vector<FitSite>& sites, const std::vector<const TaskResult*>& results,
+              const PeriodicSpec& spec)
+        // Of a record a few sheddings long a strength is known to some tenths: too little to choose a fit by.
+        : sites_(sites), fit_(sites, {1, 1e-2}) {
+        for (const TaskResult* result : results) strength_.push_back(strength_of(*result, spec));
+        constexpr double least = 1e-6;  // share of the largest
+        const double floor = least * *std::max_element(strength_.begin(), strength_.end());
+        for (double& s : strength_) s = std::max({s, floor, std::numeric_limits<double>::min()});
+    }
+
+    double of(std::size_t flow) const { return strength_[flow]; }
+    double at(const Vec3d& e) const {
+        const std::vector<double> weights = fit_.weights(e);
+        double sum = 0;
+        for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * std::log(strength_[sites_[i].group]);
+        return std::exp(sum);
+    }
+
+private:
+    const std::vector<FitSite>& sites_;
+    DirectionFit fit_;
+    std::vector<double> strength_;  // [flow]
+};
+
 /// Pairs of directions that share a face of the set.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours_in(const DirectionSet& set) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -75,6 +119,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours_in(const Directi
 
 std::vector<Fluctuation> fluctuations(const RegionForces& forces, const std::vector<const TaskResult*>& results,
                                       std::uint32_t regions, const DirectionSet& directions, const PeriodicSpec& spec) {
+    const Strengths strengths(forces.known().sites(), results, spec);
     std::vector<Fluctuation> out;
     std::vector<std::vector<Vec3d>> wholes;
     for (std::uint32_t d = 0; d < directions.count(); ++d) {
@@ -83,10 +128,10 @@ std::vector<Fluctuation> fluctuations(const RegionForces& forces, const std::vec
         Fluctuation f = one_direction(*results[from.flow], *from.transfer, regions, spec);
         // Between flows the strength is the fit's, not the nearest one's: within bounds, since regions may swing
         // strongly where the whole hardly does.
-        const double own = forces.flows()[from.flow].rms;
-        const auto level =
-            static_cast<float>(from.solved || !(own > 0) ? 1.0 : std::min(most_level, forces.rms(e) / own));
-        for (float& v : f) v *= level;
+        if (!from.solved) {
+            const auto level = static_cast<float>(std::min(most_level, strengths.at(e) / strengths.of(from.flow)));
+            for (float& v : f) v *= level;
+        }
         wholes.push_back(whole(f, regions, spec.samples));
         out.push_back(std::move(f));
     }

@@ -39,6 +39,13 @@ FitValue value_of(const Image& image, const SolvedDirection& solved, double size
     return {force.x, force.y, force.z, torque.x, torque.y, torque.z};
 }
 
+FitTerms terms_of(const std::vector<FitSite>& sites, const ShapePressure* shape, double size) {
+    FitTerms terms;
+    for (const FitSite& site : sites)
+        if (shape) terms.push_back(shape->on_body(site.direction, size));
+    return terms;
+}
+
 Vec3d force_of(const FitValue& value) { return {value[0], value[1], value[2]}; }
 
 std::vector<FitValue> values_of(const std::vector<std::vector<Image>>& images,
@@ -58,15 +65,22 @@ SolvedDirection solved_direction(const Vec3d& e, const FlowMeans& means, const V
 double spacing_of(std::uint32_t frequency) { return std::sqrt(4 * pi / (4.0 * frequency * frequency + 2)); }
 
 KnownForces::KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirection>& solved, double size,
-                         double spacing)
+                         double spacing, const ShapePressure* shape)
     : symmetry_(symmetry),
       size_(size),
       spacing_(spacing),
+      shape_(shape),
       images_(bake::images_of(symmetry, solved, spacing)),
       sites_(sites_of(images_)),
       values_(values_of(images_, solved, size)),
-      model_(choose_model(sites_, values_)),
-      fit_(sites_, model_) {
+      terms_(terms_of(sites_, shape, size)),
+      model_(choose_model(sites_, values_, terms_)),
+      fit_(sites_, model_, terms_),
+      factors_(fit_.factors(values_)),
+      rest_(values_) {
+    for (std::size_t i = 0; i < rest_.size(); ++i)
+        for (std::size_t k = 0; k < factors_.size(); ++k)
+            for (std::size_t c = 0; c < rest_[i].size(); ++c) rest_[i][c] -= factors_[k] * terms_[i][k][c];
     const std::vector<FitValue> predicted = fit_.left_out(values_);
     double largest = 0;
     for (const FitValue& value : values_) largest = std::max(largest, length(force_of(value)));
@@ -78,7 +92,11 @@ Vec3d KnownForces::torque(const Vec3d& e) const {
     const std::vector<double> weights = fit_.weights(e);
     Vec3d sum;
     for (std::size_t i = 0; i < weights.size(); ++i)
-        sum += Vec3d(values_[i][3], values_[i][4], values_[i][5]) * (weights[i] * size_);
+        sum += Vec3d(rest_[i][3], rest_[i][4], rest_[i][5]) * (weights[i] * size_);
+    if (factors_.empty()) return sum;
+    const std::vector<FitValue> terms = shape_->on_body(e, size_);
+    for (std::size_t k = 0; k < factors_.size(); ++k)
+        sum += Vec3d(terms[k][3], terms[k][4], terms[k][5]) * (factors_[k] * size_);
     return sum;
 }
 

@@ -6,6 +6,7 @@
 
 #include "bake/directions/fit.h"
 #include "bake/directions/images.h"
+#include "bake/directions/shape_pressure.h"
 #include "bake/symmetry/symmetry.h"
 #include "bake/tasks/forces.h"
 
@@ -26,13 +27,17 @@ struct DirectionErrors {
 
 class KnownForces {
 public:
-    /// `size`: a length that makes a force of a torque. Images are no farther apart than `spacing` radians.
-    KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirection>& solved, double size, double spacing);
+    /// `size`: a length that makes a force of a torque. Images are no farther apart than `spacing` radians. `shape` is of
+    /// the body, about the symmetry's centre; without it the fit knows nothing of the body but the flows.
+    KnownForces(const Symmetry& symmetry, const std::vector<SolvedDirection>& solved, double size, double spacing,
+                const ShapePressure* shape = nullptr);
 
     const std::vector<Image>& images_of(std::size_t k) const { return images_[k]; }
     /// All images of all solved directions, in their order; a site's group is its solved direction.
     const std::vector<FitSite>& sites() const { return sites_; }
     const DirectionFit& fit() const { return fit_; }
+    /// The pressure of each of the shape's terms, Pa; empty where the fit is better without.
+    const std::vector<double>& shape_factors() const { return factors_; }
     /// Mean torque on the whole body about the symmetry's centre, N m, in a stream of unit direction e.
     Vec3d torque(const Vec3d& e) const;
 
@@ -46,12 +51,16 @@ public:
 private:
     const Symmetry& symmetry_;
     double size_, spacing_;
+    const ShapePressure* shape_;
     std::vector<std::vector<Image>> images_;
     std::vector<FitSite> sites_;
     std::vector<FitValue> values_;
+    FitTerms terms_;
     std::vector<double> error_;  // of the force at each site, predicted without its group; share of the largest force
     FitModel model_;
     DirectionFit fit_;
+    std::vector<double> factors_;
+    std::vector<FitValue> rest_;  // of the values, less the shape's terms
 };
 
 /// Mean angle between neighbours of a lattice, radians.

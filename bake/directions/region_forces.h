@@ -1,5 +1,5 @@
-// From solved directions to the forces on the haptic regions in any direction: means by a fit over directions,
-// fluctuations from the nearest flow.
+// From solved directions to the forces on the haptic regions in any direction: means by a fit over directions, and the
+// nearest flow.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,6 @@ public:
 
     /// The mean force on each region in a stream of unit direction e.
     std::vector<PatchForce> mean(const Vec3d& e) const;
-    /// How strongly the whole force swings there (rms), N.
-    double rms(const Vec3d& e) const;
 
     /// The flow whose image is nearest to e, and the isometry that makes that image.
     struct Nearest {
@@ -34,11 +32,13 @@ public:
     const std::vector<FlowMeans>& flows() const { return means_; }
 
 private:
+    void add_shape(std::vector<PatchForce>& force, const Vec3d& e, double factor) const;
+
     Transfers& transfers_;
+    ShapePressure shape_;
     std::vector<FlowMeans> means_;
     KnownForces known_;
-    DirectionFit rms_fit_;
-    std::vector<std::vector<PatchForce>> site_means_;  // [site][region]
+    std::vector<std::vector<PatchForce>> site_rest_;  // [site][region]: means less the shape's terms
 };
 
 }  // namespace frm::bake

@@ -45,6 +45,7 @@ class Transfers {
 public:
     explicit Transfers(const Carrier& carrier) : carrier_(carrier) {}
 
+    const Carrier& carrier() const { return carrier_; }
     /// Good as long as this is.
     const Transfer& of(const Matrix3& g);
     /// The mean, over the isometries of `by`, of the forces on regions that a flow's forces on patches become.

@@ -1,7 +1,5 @@
 #include "bake/tasks/forces.h"
 
-#include <cmath>
-
 namespace frm::bake {
 namespace {
 
@@ -34,9 +32,6 @@ FlowMeans means_of(const TaskResult& result) {
         out.torque += vector_at(result.torque, 3 * s) * share;
     }
     for (const PatchForce& f : out.patch) out.force += f.pressure + f.friction;
-    double square = 0;
-    for (const Vec3d& f : whole_force(result)) square += dot(f - out.force, f - out.force) * share;
-    out.rms = std::sqrt(square);
     return out;
 }
 

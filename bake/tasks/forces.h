@@ -1,4 +1,4 @@
-// What a solved flow says of each patch: its mean force, and how strongly the whole swings about its own.
+// What a solved flow says of each patch: its mean force.
 #pragma once
 
 #include <vector>
@@ -13,9 +13,8 @@ struct PatchForce {
 
 struct FlowMeans {
     std::vector<PatchForce> patch;
-    Vec3d force;     ///< of the whole body, N
-    Vec3d torque;    ///< of the whole body about the mesh's origin, N m
-    double rms = 0;  ///< of the whole force about its mean, N
+    Vec3d force;   ///< of the whole body, N
+    Vec3d torque;  ///< of the whole body about the mesh's origin, N m
 };
 
 FlowMeans means_of(const TaskResult& result);

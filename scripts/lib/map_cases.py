@@ -75,6 +75,8 @@ def held_out_directions(count):
     return out
 
 
+LEAST_SWING = 0.01  # of the largest mean force: below, a ratio of strengths is one of nothings
+
 # Several speeds: a sphere 10 cm across in water, Reynolds number = speed * 1e5.
 SPEEDS = ("0.001", "0.00316", "0.01", "0.0316", "0.1")
 BASE_SPEED = "0.01"

@@ -4,7 +4,16 @@ from __future__ import annotations
 import datetime
 import math
 
-from map_cases import BODIES, SPEED_PERCENT, SPIN_PERCENT
+from map_cases import BODIES, LEAST_SWING, SPEED_PERCENT, SPIN_PERCENT
+
+
+FLUCTUATIONS = f"""## Fluctuations there
+
+How strongly the force swings about its mean (rms over the map's period), of the map over that of the run. Both are without what is slower than the
+period: of that a run has not one cycle, and most of it is what is left of its start; the last column but one says what share of
+the rms of the record as it is that leaves. A record is a few sheddings long, so the run itself knows its strength only to the error that stands
+there (of a Gaussian process with the run's spectrum; scripts/lib/map_swing.py). Directions in which the run swings by less than
+{100 * LEAST_SWING:.0f} % of the largest mean force are not in the ratios; the last column has the map's strength there, of that force."""
 
 
 def table(head, rows):
@@ -29,21 +38,22 @@ def minus(a, b):
 
 
 def held_out(made):
-    """(rms, worst) of the mean force as shares of the peak; (map's, run's) strength of the fluctuation, rms over directions."""
+    """(rms, worst) of the mean force as shares of the peak."""
     errors = [math.hypot(*minus(one["map"]["force_mean"], one["run"]["force_mean"])) / made["peak"] for one in made["held"]]
-    swing = [[math.hypot(*one[who]["force_rms"]) for one in made["held"]] for who in ("map", "run")]
-    ratios = [a / b for a, b in zip(*swing) if b > 0]
-    return math.sqrt(sum(e * e for e in errors) / len(errors)), max(errors), ratios
+    return math.sqrt(sum(e * e for e in errors) / len(errors)), max(errors)
 
 
 def bakes_table(bakes):
     rows = []
     for made in bakes:
         bake, result = made["bake"], made["made"]["result"]
-        asked = f"{seconds(bake.longest)}: {verdict(made['made']['seconds'] <= bake.longest)}" if bake.longest else "–"
+        took, load, cores = made["made"]["seconds"], made["made"].get("load", 0), made["made"].get("cores", 1)
+        busy = load > 1.5 * cores
+        good = "not known" if busy and took > bake.longest else verdict(took <= bake.longest)
         rows.append((bake.name, BODIES[bake.body].title, len(made["info"]["provenance"]["directions"]), made["info"]["sources"],
-                     seconds(made["made"]["seconds"]), asked))
-    return table(("map", "object", "flows", "sources", "time", "asked"), rows)
+                     seconds(took) + (f" (busy machine: load {load:.0f} on {cores} cores)" if busy else ""),
+                     f"{seconds(bake.longest)}: {good}" if bake.longest else "–", made["made"]["version"][:8]))
+    return table(("map", "object", "flows", "sources", "time", "asked", "program"), rows)
 
 
 def directions_table(bakes):
@@ -51,7 +61,7 @@ def directions_table(bakes):
     for made in bakes:
         if not made["held"]:
             continue
-        rms, worst, _ = held_out(made)
+        rms, worst = held_out(made)
         asked, info = made["bake"].asked, made["info"]
         rows.append((made["bake"].name, percent(rms), percent(worst),
                      f"{percent(asked[0], 0)}, {percent(asked[1], 0)}: {verdict(rms <= asked[0] and worst <= asked[1])}" if asked else "–",
@@ -63,13 +73,25 @@ def directions_table(bakes):
 def fluctuations_table(bakes):
     rows = []
     for made in bakes:
-        if not made["held"]:
+        least = LEAST_SWING * made["peak"]
+        swings = [(math.hypot(*one["map"]["force_rms"]), *one["swing"], math.hypot(*one["run"]["force_rms"]))
+                  for one in made["held"] if one["swing"]]
+        strong = [swing for swing in swings if swing[1] >= least]
+        weak = [swing[0] / made["peak"] for swing in swings if swing[1] < least]
+        if not strong:
             continue
-        _, _, ratios = held_out(made)
-        mean = math.exp(sum(map(math.log, ratios)) / len(ratios)) if ratios and min(ratios) > 0 else float("nan")
-        rows.append((made["bake"].name, f"{mean:.2f}", f"{min(ratios):.2f} to {max(ratios):.2f}",
-                     sum(abs(r - 1) <= 0.1 for r in ratios), len(ratios)))
-    return table(("map", "strength, map over run (geometric mean)", "range", "within 10 %", "of"), rows)
+        logs = [math.log(max(felt, 1e-3 * run) / run) for felt, run, _, _ in strong]
+        mean = sum(logs) / len(logs)
+        error = math.sqrt(sum((l - mean)**2 for l in logs) / max(1, len(logs) - 1) / len(logs))
+        own = math.sqrt(sum(u * u for _, _, u, _ in strong) / len(strong))
+        record = math.exp(sum(math.log(run / whole) for _, run, _, whole in strong) / len(strong))
+        # A map's strength comes from runs like this one: the difference of two such has sqrt(2) the error of one.
+        within = sum(abs(l) <= 2 * math.sqrt(2) * u for l, (_, _, u, _) in zip(logs, strong))
+        rows.append((made["bake"].name, f"{math.exp(mean):.2f} (-{percent(1 - math.exp(-error), 0)}, +{percent(math.exp(error) - 1, 0)})",
+                     f"{math.exp(min(logs)):.2f} to {math.exp(max(logs)):.2f}", sum(abs(math.exp(l) - 1) <= 0.1 for l in logs),
+                     f"{within} of {len(strong)}", percent(own, 0), f"{record:.2f}", percent(max(weak), 1) if weak else "–"))
+    return table(("map", "strength, map over run (geometric mean, its error)", "range", "within 10 %", "within twice what two runs differ by",
+                  "a run's own error", "of the record's rms", "map at most where runs swing less"), rows)
 
 
 def sizes_table(bakes):
@@ -106,7 +128,7 @@ def page(bakes, speeds, spin, commit, machine, versions, missing):
     parts = [f"""# Maps against direct runs
 
 Written by `scripts/validate-map` ({datetime.date.today():%Y-%m-%d}, commit {commit}, {machine}; program, by the first
-digits of its SHA-256: {", ".join(version[:8] for version in versions)}); how maps are made is in [bake.md](bake.md). Errors of a force are shares of the largest mean force that the map has over its solved directions."""]
+digits of its SHA-256, direct runs since they have series by that of the solver's sources: {", ".join(version[:15 if version.startswith("solver") else 8] for version in versions)}); how maps are made is in [bake.md](bake.md). Errors of a force are shares of the largest mean force that the map has over its solved directions."""]
     if missing:
         parts.append(f"Not run: {len(missing)} steps, among them {', '.join(missing[:4])}.")
     if bakes:
@@ -114,7 +136,7 @@ digits of its SHA-256: {", ".join(version[:8] for version in versions)}); how ma
                   "## Directions held out\n\nEight directions all round that no map was made from; the direct run has the cells, the start and the duration of the "
                   "map's own flows. *Stated* is what the map says of itself: each of its flows predicted from the others.",
                   directions_table(bakes),
-                  "## Fluctuations there\n\nThe rms of the force about its mean, of the map over that of the run.", fluctuations_table(bakes),
+                  FLUCTUATIONS, fluctuations_table(bakes),
                   "## Size", sizes_table(bakes)]
     if speeds:
         parts += ["## Several speeds\n\nThe drag of a sphere from a map against a direct run at the same Reynolds number, none of which was baked.",
