@@ -232,13 +232,15 @@ CASES = [
     Case("plate-5", "plate_5",          10000,  46,   10,  20, [drag(7, aim=5)], note="2 cells thick"),
     Case("box-8-1-30", "box_8_1_30",    20000,  32,   12,  60, [drag(7, aim=5)], note="2 cells thick"),
     Case("section-5", "section_5",      10000,  24,   40,  60, [drag(10), strouhal(10)], **SLAB),
-    Case("section-0.2", "section_0.2",  10000,  24,   40,  60, [drag(10), strouhal(10)], **SLAB, note="5 cells thick"),
+    Case("section-0.2", "section_0.2",  10000,  24,   40, 120, [drag(10), strouhal(10)], **SLAB, note="5 cells thick"),
     Case("spin-50", "sphere",           50,     32,   30,  10, TORQUE, **SPIN),
     Case("spin-200", "sphere",          200,    32,   30,  10, TORQUE, **SPIN, **QUICK),
     Case("spin-1000", "sphere",         1000,   32,   40,  20, TORQUE, **SPIN),
     # One body on a lattice that lies otherwise.
     Case("sphere-100-turned", "sphere", 100,    32,   12,   8, turn=30, like="sphere-100", percent=3),
     Case("cube-10000-turned", "cube",   10000,  32,   12,  40, turn=30, like="cube-10000", percent=3),
+    # 32 cells are too few for it to hold of the cube.
+    Case("cube-10000-at-48-turned", "cube", 10000, 48, 12,  60, turn=30, like="cube-10000-at-48", percent=3),
     Case("box-8-1-30-turned", "box_8_1_30", 20000, 32, 12, 60, turn=30, like="box-8-1-30", percent=3),
     # One body with other cells: the rest of SERIES.
     Case("sphere-100-at-12", "sphere",  100,    12,   12,   8),
@@ -248,12 +250,14 @@ CASES = [
     Case("cube-10000-at-12", "cube",    10000,  12,   12,  40),
     Case("cube-10000-at-16", "cube",    10000,  16,   12,  40),
     Case("cube-10000-at-24", "cube",    10000,  24,   12,  40),
+    Case("cube-10000-at-48", "cube",    10000,  48,   12,  60),
 ]
 
 # Drag against the cell, coarse to fine: the order of convergence.
 SERIES = {
     "sphere at Re 100": ["sphere-100-at-12", "sphere-100-at-16", "sphere-100-at-24", "sphere-100", "sphere-100-at-48"],
-    "cube face-on at Re 10,000": ["cube-10000-at-12", "cube-10000-at-16", "cube-10000-at-24", "cube-10000"],
+    "cube face-on at Re 10,000": ["cube-10000-at-12", "cube-10000-at-16", "cube-10000-at-24", "cube-10000",
+                                  "cube-10000-at-48"],
 }
 
 

@@ -186,7 +186,7 @@ def test_a_case_that_does_not_end(stub):
 def test_only(stub):
     assert len(stub.run("--list", "--only", "sphere-100").splitlines()) == 1
     assert len(stub.run("--list", "--only", "sphere-100*").splitlines()) > 5
-    assert len(stub.run("--list", "--only", "turned").splitlines()) == 3
+    assert len(stub.run("--list", "--only", "turned").splitlines()) == 4
     assert "no case is called 'cone'" in stub.run("--only", "cone", status=1)
     assert 1 < len(stub.run("--list", "--quick").splitlines()) < 10
 
