@@ -1,7 +1,6 @@
 // The symmetry of a body is found wherever it lies, and a direction goes to the same place as all that it is carried
 // into.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "bake/regions/tessellate.h"
 #include "bake/symmetry/symmetry.h"
 #include "tests/support/catch.h"
+#include "tests/support/processor_time.h"
 #include "tests/support/samples.h"
 #include "tests/support/shapes.h"
 
@@ -268,11 +268,7 @@ TEST_CASE("elements are in the order that is documented", "[symmetry]") {
 
 TEST_CASE("symmetry of large meshes is found in the time of a look", "[symmetry]") {
     // Measured on a quiet core: 0.1 s, 0.7 s and 0.5 s. The bounds only catch what has become quadratic.
-    const auto seconds = [](const Surface& s) {
-        const auto begin = std::chrono::steady_clock::now();
-        find_symmetry(s);
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    };
+    const auto seconds = [](const Surface& s) { return test::processor_seconds([&] { find_symmetry(s); }); };
     CHECK(seconds(test::icosphere(1, 5)) < 5);
     CHECK(seconds(tessellate(test::box({1, 1, 1}), 0.02, 20000).surface) < 10);
     CHECK(seconds(tessellate(test::sample("paddle.glb"), 1e-4, 200000).surface) < 10);
