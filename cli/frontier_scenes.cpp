@@ -264,14 +264,13 @@ FrontierScene stroke(bool quick) {
         {"time": 2.4, "position": [0, 0.50, 0.95], "rotation": [30, 0, 0]}])")));
     s.play.height = [](double x, double y) { return 0.01 * std::sin(2 * pi * (0.8 * x + 0.6 * y) / 0.8); };
     s.standard.map = base.map(base.shape.triangles, base.shape.sources, 8, LawMap().rounding);
-    s.standard.water = water_of(5, 0.025, 0.8);
-    if (quick) s.standard.water->nx = s.standard.water->ny = 80;
     const double metres = quick ? 2 : 5;
+    s.standard.water = water_of(metres, quick ? 0.025 : 5.0 / 140, 0.8);
     base.map_knobs({50, 200, 500, 1000, 4000, 8000}, {6, 9, 14, 20, 28, 56, 80, 160, 400}, true);
     if (quick)
         base.water_knobs({0.1, 0.025, 0.0125}, metres);
     else
-        base.water_knobs({0.1, 0.05, 0.035714285714285712, 0.025, 0.0125, 0.00625}, metres);
+        base.water_knobs({0.1, 0.05, 5.0 / 140, 0.025, 0.0125, 0.00625}, metres);
     base.tick_knob({10, 5, 2, 1, 0.5});
     base.skip_knob(water_rules);
     base.together_knob();
