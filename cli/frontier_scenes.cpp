@@ -289,7 +289,7 @@ FrontierScene boat(bool quick) {
     base.shape = shape_of([](std::uint32_t n) {
         return ellipsoid_surface({0.6, 0.25, 0.2}, static_cast<std::uint32_t>(std::lround(std::sqrt(n / 8.0))));
     });
-    base.shape.triangles = 2048;
+    base.shape.triangles = 4608;
     FrontierScene& s = base.scene;
     s.what =
         "a hull (ellipsoid of 1.2 x 0.5 x 0.4 m) towed at 0.5 m/s that heaves, rolls and pitches half in waves of "
@@ -312,7 +312,7 @@ FrontierScene boat(bool quick) {
     if (quick) s.standard.water->nx = s.standard.water->ny = 48;
     const double metres = quick ? 2.4 : 6;
     base.water_knobs({0.2, 0.15, 0.1, 0.075, 0.05, 0.0375, 0.025, 0.0125}, metres);
-    base.map_knobs({128, 288, 512, 1152, 4608, 8192}, {8, 14, 28, 56, 80, 160, 400}, false);
+    base.map_knobs({128, 288, 512, 1152, 2048, 8192}, {8, 14, 28, 56, 80, 160, 400}, false);
     base.tick_knob({10, 5, 2, 1, 0.5});
     base.skip_knob(water_rules);
     base.together_knob();
