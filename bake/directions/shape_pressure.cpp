@@ -8,6 +8,15 @@ namespace {
 /// The pressure of each term where the cosine between the stream and the inward normal is c > 0.
 std::array<double, ShapePressure::terms> pressures(double c) { return {c, c * c, c * c * c}; }
 
+/// What faces the stream, with the pressures on it.
+template <typename Parts, typename Use>
+void each_to_windward(const Parts& parts, const Vec3d& e, const Use& use) {
+    for (const auto& part : parts) {
+        const double c = -dot(part.normal, e);
+        if (c > 0) use(part, pressures(c));
+    }
+}
+
 }  // namespace
 
 ShapePressure::ShapePressure(const Surface& surface, const Regions& regions, const Vec3d& centre)
@@ -20,21 +29,15 @@ ShapePressure::ShapePressure(const Surface& surface, const Regions& regions, con
 
 std::vector<ShapePressure::Term> ShapePressure::on_regions(const Vec3d& e) const {
     std::vector<Term> out(regions_);
-    for (const Part& part : parts_) {
-        const double c = -dot(part.normal, e);
-        if (!(c > 0)) continue;
-        const auto pressure = pressures(c);
+    each_to_windward(parts_, e, [&](const Part& part, const auto& pressure) {
         for (std::size_t k = 0; k < terms; ++k) out[part.region][k] -= part.normal * (part.area * pressure[k]);
-    }
+    });
     return out;
 }
 
 std::vector<FitValue> ShapePressure::on_body(const Vec3d& e, double size) const {
     std::vector<FitValue> out(terms);
-    for (const Part& part : parts_) {
-        const double c = -dot(part.normal, e);
-        if (!(c > 0)) continue;
-        const auto pressure = pressures(c);
+    each_to_windward(parts_, e, [&](const Part& part, const auto& pressure) {
         for (std::size_t k = 0; k < terms; ++k) {
             const Vec3d force = part.normal * (-part.area * pressure[k]);
             const Vec3d torque = cross(part.arm, force) / size;
@@ -43,7 +46,7 @@ std::vector<FitValue> ShapePressure::on_body(const Vec3d& e, double size) const 
                 out[k][static_cast<std::size_t>(i) + 3] += torque[i];
             }
         }
-    }
+    });
     return out;
 }
 

@@ -114,8 +114,8 @@ void WaveStep::one(std::uint32_t threads) {
     const std::int32_t around = lead() - 1;
 #pragma omp parallel num_threads(static_cast <int>(bands))
     {
-        const FloatingPointGuard
-            modes;  // the threads are the process's: a host may have had them before, in modes of its own
+        // The threads are the process's: a host may have had them before, in modes of its own.
+        const FloatingPointGuard modes;
 #pragma omp for schedule(static)
         for (std::int32_t b = 0; b < bands; ++b)
             for (std::int32_t m = std::max(0, begin(b) - around); m <= begin(b) + around; ++m) faces(m);

@@ -273,14 +273,44 @@ TEST_CASE("one flow alone tells nothing of its error, and asks for no other", "[
     CHECK(known.errors().worst == 0);
 }
 
+namespace {
+
+/// A body without symmetry of which these flows are known, one for each direction of the set.
+struct Swinging {
+    Swinging(const Surface& surface, const Regions& regions, const DirectionSet& set,
+             const std::vector<TaskResult>& flows)
+        : landing(surface, 1e-6),
+          transfers({surface, regions, regions, {}, landing}),
+          forces(transfers, none, means_of_all(flows), solved_of_all(set, flows), 0.2, spacing_of(1)) {
+        for (const TaskResult& flow : flows) results.push_back(&flow);
+    }
+
+    static std::vector<FlowMeans> means_of_all(const std::vector<TaskResult>& flows) {
+        std::vector<FlowMeans> means;
+        for (const TaskResult& flow : flows) means.push_back(means_of(flow));
+        return means;
+    }
+    static std::vector<SolvedDirection> solved_of_all(const DirectionSet& set, const std::vector<TaskResult>& flows) {
+        std::vector<SolvedDirection> solved;
+        for (std::uint32_t d = 0; d < flows.size(); ++d)
+            solved.push_back(solved_direction(set.direction(d), means_of(flows[d]), {}));
+        return solved;
+    }
+
+    Symmetry none;
+    Landing landing;
+    Transfers transfers;
+    RegionForces forces;
+    std::vector<const TaskResult*> results;
+};
+
+}  // namespace
+
 TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'", "[directions]") {
     const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
     const Regions regions = split_regions(box, 6);
-    const Symmetry none;
     const DirectionSet set(1), dense(2);
     std::vector<TaskResult> flows;
-    std::vector<FlowMeans> means;
-    std::vector<SolvedDirection> solved;
     const std::uint32_t period = 64;
     for (std::uint32_t d = 0; d < set.count(); ++d) {
         TaskResult r;
@@ -299,22 +329,16 @@ TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'"
         }
         r.torque.assign(std::size_t{r.samples} * 3, 0);
         flows.push_back(r);
-        means.push_back(means_of(flows.back()));
-        solved.push_back(solved_direction(set.direction(d), means.back(), {}));
     }
-    const Landing landing(box, 1e-6);
-    Transfers transfers({box, regions, regions, {}, landing});
-    const RegionForces forces(transfers, none, means, solved, 0.2, spacing_of(1));
-    std::vector<const TaskResult*> results;
-    for (const TaskResult& r : flows) results.push_back(&r);
+    const Swinging body(box, regions, set, flows);
     const PeriodicSpec spec{period, 32, 8, 0};
-    const std::vector<Fluctuation> out = fluctuations(forces, results, 6, dense, spec);
+    const std::vector<Fluctuation> out = fluctuations(body.forces, body.results, 6, dense, spec);
     for (std::uint32_t d = 0; d < dense.count(); ++d) {
         double largest[2] = {};
         for (std::uint32_t l = 0; l < 2; ++l)
             for (std::uint32_t s = 0; s < 32; ++s)
                 largest[l] = std::max(largest[l], std::fabs(static_cast<double>(out[d][(l * 32 + s) * 6])));
-        const RegionForces::Nearest from = forces.nearest(dense.direction(d));
+        const RegionForces::Nearest from = body.forces.nearest(dense.direction(d));
         if (from.solved) {
             CHECK(largest[0] == Approx(from.flow == 0 ? 1e-4 : 1).epsilon(0.01));
             CHECK(largest[1] == Approx(0.5).epsilon(0.01));
@@ -326,14 +350,11 @@ TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'"
 TEST_CASE("between flows the swing is what a map has of theirs, not what their records had", "[directions]") {
     const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
     const Regions regions = split_regions(box, 1);
-    const Symmetry none;
     const DirectionSet set(1), dense(2);
     const std::uint32_t period = 64;
     const PeriodicSpec spec{period, 32, 8, 0};
     const float turn = 2 * 3.14159265f / static_cast<float>(period);
     std::vector<TaskResult> flows;
-    std::vector<FlowMeans> means;
-    std::vector<SolvedDirection> solved;
     for (std::uint32_t d = 0; d < set.count(); ++d) {
         TaskResult r;
         r.interval = 1;
@@ -347,15 +368,9 @@ TEST_CASE("between flows the swing is what a map has of theirs, not what their r
         }
         r.torque.assign(std::size_t{r.samples} * 3, 0);
         flows.push_back(r);
-        means.push_back(means_of(flows.back()));
-        solved.push_back(solved_direction(set.direction(d), means.back(), {}));
     }
-    const Landing landing(box, 1e-6);
-    Transfers transfers({box, regions, regions, {}, landing});
-    const RegionForces forces(transfers, none, means, solved, 0.2, spacing_of(1));
-    std::vector<const TaskResult*> results;
-    for (const TaskResult& r : flows) results.push_back(&r);
-    const std::vector<Fluctuation> out = fluctuations(forces, results, 1, dense, spec);
+    const Swinging body(box, regions, set, flows);
+    const std::vector<Fluctuation> out = fluctuations(body.forces, body.results, 1, dense, spec);
     for (std::uint32_t d = 0; d < dense.count(); ++d) {
         double square = 0;
         for (std::uint32_t s = 0; s < 32; ++s) square += std::pow(static_cast<double>(out[d][s * 6]), 2) / 32;
