@@ -439,7 +439,7 @@ typedef struct frm_water_state {
     uint64_t capacity;  /* in: floats that each array can take; nx * ny are needed */
     uint64_t tick;      /* out: ticks of the world when the field was like this */
     double time;        /* out: s */
-    float *height;      /* out: above the calm level, at cell centres, m; may be null */
+    float *height;      /* out: above the calm level, at cell centres, no lower than -depth, m; may be null */
     float *velocity_x;  /* out: water velocity along the first horizontal axis, at cell centres, m/s; may be null */
     float *velocity_y;  /* out: along the second; may be null */
 } frm_water_state;
@@ -476,8 +476,8 @@ FRM_API frm_status FRM_CALL frm_water_set_height(frm_water water, const float *h
  * count 0 takes it away; else `count` must be nx * ny. [owner] */
 FRM_API frm_status FRM_CALL frm_water_set_pressure(frm_water water, const float *pressure, uint64_t count);
 
-/* Height of the surface (m, in the world, level included) at a position on the first and second horizontal axis; the
- * calm level outside. [realtime] */
+/* Height of the surface (m, in the world, level included) at a position on the first and second horizontal axis, no
+ * lower than the bed; the calm level outside. [realtime] */
 FRM_API frm_status FRM_CALL frm_water_get_height(frm_water water, double x, double y, double *height);
 
 /* ---- Body ----------------------------------------------------------------------------------------------------- */

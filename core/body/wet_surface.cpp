@@ -16,6 +16,7 @@ constexpr std::int32_t widest_look = 96;
 struct Range {
     float low = 0, high = 0;
     bool finite = true;
+    bool bare = false;  ///< somewhere it would be lower than the bed, or may be
 
     bool flat() const { return low == high; }
 };
@@ -69,8 +70,9 @@ Under under(const Body& body, const SurfaceView& surface, const GridPlacement& a
             !(x < widest_look && y < widest_look)};
 }
 
-Range range_over(const HeightGrid& grid, const Under& body) {
-    if (body.wide) return {-infinite, infinite, true};
+/// Linear waves run lower than the bed where they are higher than the water is deep: there a body meets no water.
+Range range_over(const HeightGrid& grid, const Under& body, float bed) {
+    if (body.wide) return {-infinite, infinite, true, true};
     Rect r = body.cells;
     if (r.i1 <= 0 || r.j1 <= 0 || r.i0 >= grid.nx || r.j0 >= grid.ny) return {};
     const bool inside = r.i0 >= 0 && r.j0 >= 0 && r.i1 <= grid.nx && r.j1 <= grid.ny;
@@ -81,6 +83,8 @@ Range range_over(const HeightGrid& grid, const Under& body) {
                            &range.high, &odd);
     range.finite = odd == 0;
     range.low += grid.level, range.high += grid.level;
+    range.bare = range.low < bed;
+    range.low = std::max(range.low, bed), range.high = std::max(range.high, bed);
     if (!inside) range.low = std::min(range.low, 0.0f), range.high = std::max(range.high, 0.0f);  // beyond the border
     return range;
 }
@@ -149,7 +153,8 @@ Wet whole_surface(const WetMoments& m, const BodyLevel& level) {
 }
 
 /// Cluster by cluster: those that are wholly wet by their moments, those that are cut triangle by triangle.
-Wet clipped_surface(Body& body, const BodyLevel& level, const HeightGrid* grid, const GridPlacement& at) {
+/// No height is sampled lower than `bed`.
+Wet clipped_surface(Body& body, const BodyLevel& level, const HeightGrid* grid, const GridPlacement& at, float bed) {
     const Map& map = *body.def.map;
     const Clusters& clusters = map.clusters;
     const Kernels& kernel = kernels();
@@ -177,6 +182,8 @@ Wet clipped_surface(Body& body, const BodyLevel& level, const HeightGrid* grid, 
         if (grid) {
             kernel.sample_heights(grid, &at, block.point[0][0], block.point[1][0], block.point[2][0], 4 * kernel_lanes,
                                   samples);
+            if (bed > -infinite)
+                for (float& sample : samples) sample = std::max(sample, bed);
         }
         kernel.measure_clusters(&block, &level, grid ? samples : nullptr, &planes, &moments);
         for (std::uint32_t k = 0; k < kernel_lanes && first + k < count; ++k) {
@@ -241,11 +248,12 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     Range range;
     GridPlacement at{};
     HeightGrid grid{};
+    const float bed = surface.field ? -surface.field->def().depth : -infinite;
     if (surface.field) {
         at = placement(body, surface);
         const Under cells = under(body, surface, at);
         grid = heights_of(surface, cells);
-        range = range_over(grid, cells);
+        range = range_over(grid, cells, bed);
         if (!range.finite) {
             body.water_finite = false;
             return;
@@ -271,7 +279,8 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
         body.wetness = Wetness::whole;
     } else {
         body.clipped_triangles = body.wet_sources = 0;
-        wet = clipped_surface(body, level, surface.field && !range.flat() ? &grid : nullptr, at);
+        wet = clipped_surface(body, level, surface.field && !range.flat() ? &grid : nullptr, at,
+                              range.bare ? bed : -infinite);
         body.wetness = Wetness::partly;
         if (all_wet) set_sources(body, 1), body.wetness = Wetness::whole;
     }

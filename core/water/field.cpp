@@ -86,7 +86,7 @@ float Field::height_at(const GridOrigin& o, float x, float y) const {
     const float gx = o.x + x, gy = o.y + y;
     const float px = static_cast<float>(o.i) + gx, py = static_cast<float>(o.j) + gy;
     if (!(px >= 0 && py >= 0 && px <= static_cast<float>(def_.nx) && py <= static_cast<float>(def_.ny))) return 0;
-    return level() + bilinear(height_, def_.nx, def_.ny, stride_, o, gx - 0.5f, gy - 0.5f);
+    return std::max(level() + bilinear(height_, def_.nx, def_.ny, stride_, o, gx - 0.5f, gy - 0.5f), -def_.depth);
 }
 
 void Field::velocity_at(const GridOrigin& o, float x, float y, float& u, float& v) const {

@@ -68,7 +68,7 @@ public:
     /// A push of the velocities, at once.
     void push(const Push& push);
 
-    /// Bilinear; zero outside.
+    /// Bilinear, no lower than the bed; zero outside.
     float height_at(const GridOrigin& origin, float x, float y) const;
     void velocity_at(const GridOrigin& origin, float x, float y, float& u, float& v) const;
     /// What the velocity there goes on by (Eq. 7), over a time in which each m of slope a cell adds `pull` m/s.
@@ -118,7 +118,7 @@ public:
     /// Of the basin's calm surface, above where it was: to be added to the rows' heights.
     float level() const { return static_cast<float>(level_); }
 
-    /// All heights, with the level, into an array of nx by ny.
+    /// All heights, with the level, as they are stepped: also lower than the bed. Into an array of nx by ny.
     void copy_heights(float* out) const;
     /// Calm but for these heights.
     void set_heights(const float* height);

@@ -1,5 +1,7 @@
 #include "core/water/snapshot.h"
 
+#include <algorithm>
+
 namespace frm {
 
 SnapshotExchange::SnapshotExchange(std::size_t cells, std::pmr::memory_resource* memory)
@@ -34,7 +36,11 @@ SnapshotExchange::Slot& SnapshotExchange::acquire() {
 
 void copy_to_centres(const Field& field, float* height, float* velocity_x, float* velocity_y) {
     const std::int32_t nx = field.def().nx, ny = field.def().ny;
-    if (height) field.copy_heights(height);
+    if (height) {
+        field.copy_heights(height);
+        const float bed = -field.def().depth;
+        for (std::size_t i = 0; i < field.cells(); ++i) height[i] = std::max(height[i], bed);
+    }
     for (std::int32_t j = 0; j < ny; ++j) {
         const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(nx);
         const float *u = field.velocity_x_row(j), *v = field.velocity_y_row(j), *above = field.velocity_y_row(j + 1);

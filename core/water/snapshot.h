@@ -56,8 +56,8 @@ private:
     std::atomic<bool> read_{false};
 };
 
-/// Averages the face velocities to cell centres and copies the heights; arrays of field.cells() floats, each may be
-/// null.
+/// Averages the face velocities to cell centres and copies the heights, none lower than the bed; arrays of field.cells()
+/// floats, each may be null.
 void copy_to_centres(const Field& field, float* height, float* velocity_x, float* velocity_y);
 
 }  // namespace frm

@@ -1,10 +1,12 @@
 // Buoyancy and weight against exact answers.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
 
 #include "core/kernels/kernels.h"
+#include "core/water/snapshot.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/worlds.h"
@@ -345,6 +347,32 @@ TEST_CASE("in waves buoyancy is the same 10 km away", "[buoyancy]") {
     const Wrench near = force(0, 0, 0), far = force(10000, -10000, 1234);
     CHECK(length(near.force - far.force) < 1e-5f * length(near.force));
     CHECK(length(near.torque - far.torque) < 1e-5f * length(near.force));
+}
+
+TEST_CASE("no water is felt or read lower than the bed", "[buoyancy]") {
+    // Linear waves that are higher than the water is deep run lower than its bed.
+    const float depth = 0.5f;
+    const auto slab = test::map_of(test::fine_box({0.3, 0.3, 0.1}, 0.05), 18);
+    for (const float reach : {0.0f, 1e9f}) {  // of the trough in x: under half of the body, and under all of it
+        World world = test::world_of();
+        Water& water = world.create_water(test::water_of(64, 0.05f, depth));
+        Body& in_bed = world.create_body(test::body_of(slab, {0, 0, -0.5}));
+        Body& above = world.create_body(test::body_of(slab, {0, 0, -0.44}));
+        const float middle = 32;
+        for (std::int32_t j = 0; j < 64; ++j)
+            for (std::int32_t i = 0; i < 64; ++i)
+                water.field.height_row(j)[i] = static_cast<float>(i) < middle + reach ? -2.0f : -depth;
+        water.field.wake({0, 0, 64, 64});
+        REQUIRE(world.tick(1e-5f));
+        INFO("reach " << reach);
+        CHECK(in_bed.displaced_volume == Approx(0.3 * 0.3 * 0.05).epsilon(1e-4));
+        CHECK(length(in_bed.forces.buoyancy.torque) < 1e-3f);
+        CHECK(above.displaced_volume == 0);
+        CHECK(water.field.height_at(water.origin_at(-0.5, 0), 0, 0) == -depth);
+        std::vector<float> height(water.field.cells());
+        copy_to_centres(water.field, height.data(), nullptr, nullptr);
+        CHECK(*std::min_element(height.begin(), height.end()) == -depth);
+    }
 }
 
 TEST_CASE("a hair of a wave changes nothing: one plane or many", "[buoyancy]") {

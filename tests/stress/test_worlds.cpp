@@ -323,6 +323,7 @@ private:
         for (std::size_t i = 0; i < cells; ++i) {
             const auto h = static_cast<double>(h_[i]), u = static_cast<double>(u_[i]), v = static_cast<double>(v_[i]);
             REQUIRE(std::isfinite(h + u + v));
+            REQUIRE(h_[i] >= -water_def_.depth);
             high = std::max(high, std::fabs(h));
             fast = std::max(fast, std::sqrt(u * u + v * v));
             energy += 0.5 * density() * (gravity() * h * h + static_cast<double>(water_def_.depth) * (u * u + v * v));
