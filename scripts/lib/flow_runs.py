@@ -13,19 +13,22 @@ import time
 
 from flow_cases import mesh_of
 
-# What the numbers depend on. A case is measured again when one of these changes by more than a line of comment.
+# What the numbers depend on. Where one of these changes by more than a line of comment a case is measured again, unless its
+# beginning still has the same bits.
 SOLVER = ("bake/flow/*.h", "bake/flow/*.cpp", "bake/mesh/*.h", "bake/mesh/*.cpp", "bake/series/spectrum.*",
           "cli/flow.cpp")
+# Of these, what reads a series that may be long: a beginning does not show its changes.
+READS = ("bake/flow/flow.h", "bake/flow/solve.cpp", "bake/flow/statistics.*", "bake/series/spectrum.*", "cli/flow.cpp")
 
 
-def solver_sources(root):
-    return sorted(path for pattern in SOLVER for path in pathlib.Path(root).glob(pattern))
+def solver_sources(root, patterns=SOLVER):
+    return sorted(path for pattern in patterns for path in pathlib.Path(root).glob(pattern))
 
 
-def solver_version(root):
+def solver_version(root, patterns=SOLVER):
     """A hash of the solver's sources, without the lines that are only a comment and the space at the ends of lines."""
     digest = hashlib.sha256()
-    for path in solver_sources(root):
+    for path in solver_sources(root, patterns):
         lines = [line.strip() for line in path.read_text().splitlines()]
         kept = [line for line in lines if line and not line.startswith("//")]
         digest.update("\n".join([path.relative_to(root).as_posix(), *kept, ""]).encode())
@@ -87,6 +90,7 @@ class Runs:
     def __init__(self, out, program, root):
         self.out, self.program = pathlib.Path(out), program
         self.solver, self.commit, self.machine = solver_version(root), commit(root), machine()
+        self.reads = solver_version(root, READS)
         self.meshes = {}
 
     def mesh(self, case):
@@ -101,20 +105,46 @@ class Runs:
     def path(self, case):
         return self.out / "cases" / (case.name + ".json")
 
-    def load(self, case):
-        """What the case gave with this solver, mesh and command line, or None."""
+    def load(self, case, look=False):
+        """What the case gave with this solver, mesh and command line, or None. With `look`, one whose steps are by other
+        sources is this solver too if the case begins with the same bits: a run has the same bits whatever the threads, and
+        other steps show in its first ones."""
         try:
             record = json.loads(self.path(case).read_text())
         except (OSError, ValueError):
             return None
-        same = (record.get("solver") == self.solver and record.get("command") == case.command()
-                and record.get("mesh_sha256") == self.mesh(case))
-        return record if same else None
+        if record.get("command") != case.command() or record.get("mesh_sha256") != self.mesh(case):
+            return None
+        if record.get("solver") == self.solver:
+            return record
+        if not look or record.get("reads") != self.reads or not record.get("begins"):
+            return None
+        if self.begins(case) != record["begins"]:
+            return None
+        record["solver"] = self.solver
+        write_whole(self.path(case), json.dumps(record, indent=2).encode() + b"\n")
+        return record
+
+    def begins(self, case):
+        """A hash of all that the case's first length travelled gives, and of its run on half the resolution; or None."""
+        words = case.command()
+        for option in ("--start-up", "--duration"):
+            words[words.index(option) + 1] = "0.5"
+        done = subprocess.run([str(self.program), *words], cwd=self.out, capture_output=True, text=True, errors="replace",
+                              stdin=subprocess.DEVNULL)
+        try:
+            result = json.loads(done.stdout) if done.returncode == 0 else None
+        except ValueError:
+            result = None
+        if not isinstance(result, dict) or result.get("ending") == "cancelled":
+            return None
+        bits = {key: value for key, value in result.items() if key not in ("seconds", "mlups")}
+        return hashlib.sha256(json.dumps(bits, sort_keys=True).encode()).hexdigest()[:16]
 
     def run(self, case, longest):
         """Runs the case for `longest` seconds at most and keeps what it gave, or why it failed."""
         record = {"name": case.name, "command": case.command(), "mesh_sha256": self.mesh(case), "solver": self.solver,
-                  "commit": self.commit, "machine": self.machine,
+                  "reads": self.reads, "commit": self.commit, "machine": self.machine,
                   "started": datetime.datetime.now().astimezone().isoformat(timespec="seconds")}
         began = time.monotonic()
         try:
@@ -126,6 +156,8 @@ class Runs:
         except OSError as error:
             record["error"] = f"{self.program}: {error.strerror}"
         record["wall_seconds"] = round(time.monotonic() - began, 3)
+        if "error" not in record:
+            record["begins"] = self.begins(case)
         write_whole(self.path(case), json.dumps(record, indent=2).encode() + b"\n")
         return record
 

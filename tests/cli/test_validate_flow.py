@@ -24,7 +24,7 @@ PROGRAM = """#!/usr/bin/python3 -S
 import json, os, pathlib, sys, time
 here = pathlib.Path(__file__).parent
 words = " ".join(sys.argv[1:])
-with open(here / "calls", "a") as calls:
+with open(here / ("looks" if "--start-up 0.5 --duration 0.5" in words else "calls"), "a") as calls:
     calls.write(words + "\\n")
 if words == "bench --json":
     print(json.dumps({"results": [{"name": "flow_kernel_mlups", "value": 123.4, "unit": "M/s"},
@@ -76,9 +76,9 @@ class Stub:
         assert done.returncode == status, done.stdout + done.stderr
         return done.stdout + done.stderr
 
-    def calls(self):
-        """What the program has been asked since the last time."""
-        path = self.folder / "calls"
+    def calls(self, kind="calls"):
+        """What the program has been asked since the last time; "looks": how a case begins."""
+        path = self.folder / kind
         lines = path.read_text().splitlines() if path.exists() else []
         path.unlink(missing_ok=True)
         return lines
@@ -114,7 +114,7 @@ def test_what_is_there_is_kept(stub):
     assert len(stub.calls()) == 3
 
 
-@pytest.mark.parametrize("key", ["solver", "command", "mesh_sha256"])
+@pytest.mark.parametrize("key", ["command", "mesh_sha256"])
 def test_what_was_measured_otherwise_is_measured_again(stub, key):
     stub.run("--only", "spin-200")
     path = stub.out / "cases" / "spin-200.json"
@@ -123,6 +123,36 @@ def test_what_was_measured_otherwise_is_measured_again(stub, key):
     stub.calls()
     stub.run("--only", "spin-200")
     assert len(stub.calls()) == 1 and stub.kept("spin-200")[key] != "another"
+
+
+def test_other_sources_that_step_alike_are_the_same_solver(stub):
+    stub.run("--only", "spin-*")
+    assert len(stub.calls()) == 3 and len(stub.calls("looks")) == 3
+
+    def came_from(**changes):
+        for name in ("spin-50", "spin-200", "spin-1000"):
+            path = stub.out / "cases" / (name + ".json")
+            path.write_text(json.dumps({**stub.kept(name), **changes}))
+
+    came_from(solver="another")
+    assert stub.run("--list", "--only", "spin-*").count("not measured") == 3  # nothing is run to list
+    assert stub.run("--only", "spin-*").count("kept") == 3
+    assert stub.calls() == [] and len(stub.calls("looks")) == 3
+    stub.run("--only", "spin-*")
+    assert stub.calls() == [] and stub.calls("looks") == []  # it is this solver now
+
+    came_from(solver="another")
+    stub.answer({"0,0,0.08": {"cells": 123457}})  # one of them begins otherwise
+    stub.run("--only", "spin-*")
+    assert len(stub.calls()) == 1 and stub.kept("spin-200")["result"]["cells"] == 123457
+    for changes in ({"reads": "another"}, {"begins": None}):
+        came_from(solver="another", **changes)
+        stub.run("--only", "spin-*")
+        assert len(stub.calls()) == 3
+    came_from(solver="another")
+    stub.answer({"--duration 0.5 ": {"status": 1}})  # cannot be told
+    stub.run("--only", "spin-*")
+    assert len(stub.calls()) == 3 and not stub.kept("spin-50")["begins"]
 
 
 def test_the_solver_is_another_when_its_code_changes(lib, tmp_path):
