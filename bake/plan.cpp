@@ -120,16 +120,22 @@ void add_stream(BakePlan& plan, const Vec3d& direction, double speed) {
     }
 }
 
-/// Turns so fast that the fastest point moves at the base speed.
+/// Turns so fast that the fastest point of all moves at the base speed. Cells and lengths travelled are counted by what
+/// turns: a paddle about its long axis is as wide as its blade, and cells for the whole length of it would be too few.
 void add_spins(BakePlan& plan, const SurfaceProperties& shape) {
-    double radius = 0;
-    for (const Vec3d& v : plan.surface.vertices) radius = std::max(radius, length(v - shape.centroid));
-    plan.spin_rate = plan.options.speed / radius;
+    const auto farthest = [&](const auto& distance) {
+        double radius = 0;
+        for (const Vec3d& v : plan.surface.vertices) radius = std::max(radius, length(distance(v - shape.centroid)));
+        return radius;
+    };
+    plan.spin_rate = plan.options.speed / farthest([](const Vec3d& arm) { return arm; });
     for (const Vec3d& axis : distinct_spins(plan.symmetry)) {
         FlowCase c = base_case(plan);
         c.speed = 0;
         c.spin = axis * plan.spin_rate;
         c.spin_centre = shape.centroid;
+        const double across = 2 * farthest([&](const Vec3d& arm) { return cross(axis, arm); });
+        c.reference_length = std::min(c.reference_length, across);
         const int along = axis.x != 0 ? 0 : axis.y != 0 ? 1 : 2;
         add_task(plan, TaskKind::spin, std::string("spin ") + (axis[along] < 0 ? "-" : "+") + "xyz"[along], c);
     }

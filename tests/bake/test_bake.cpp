@@ -221,3 +221,25 @@ TEST_CASE("the flows of further speeds and spins are the same job", "[bake]") {
         CHECK(length(net[1]) < 1e-4 * gross);
     }
 }
+
+TEST_CASE("a turn about a long axis has cells across what turns", "[bake]") {
+    BakeOptions options = small_bake();
+    options.mesh = test::sample_path("paddle.glb");
+    options.resolution = 12;
+    options.spin = true;
+    const BakePlan plan = plan_bake(options);
+    const Vec3d centre = measure(plan.surface).centroid;
+    int seen = 0;
+    for (const Task& task : plan.tasks) {
+        if (task.kind != TaskKind::spin) continue;
+        const Vec3d axis = task.flow.spin / length(task.flow.spin);
+        double radius = 0;
+        for (const Vec3d& v : plan.surface.vertices) radius = std::max(radius, length(cross(axis, v - centre)));
+        INFO(task.name);
+        // Twelve across the blade, not across the root of the whole paddle's area; never fewer than of a stream.
+        CHECK(2 * radius / task.cost.cell > 11.9);
+        CHECK(plan.reference_length / task.cost.cell > 11.9);
+        ++seen;
+    }
+    CHECK(seen == 3);
+}
