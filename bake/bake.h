@@ -69,6 +69,7 @@ struct BakePlan {
     double spin_rate = 0;               ///< rad/s; 0: no spins
     double reference_length = 0;        ///< m
     double start_up = 0, period = 0, overlap = 0;  ///< reference lengths travelled
+    double record = 0;                             ///< of each flow, after its start: a period and the overlap or more
     std::uint32_t harmonics = 0, samples = 0;
     std::vector<Task> tasks;  ///< of the first round, and of those that extend_plan() added
 };

@@ -99,6 +99,7 @@ std::string provenance(const BakePlan& plan, const std::vector<TaskResult>& resu
     j["resolution"] = plan.tasks.front().flow.resolution;
     j["start_up_lengths"] = plan.start_up;
     j["period_lengths"] = plan.period;
+    j["record_lengths"] = plan.record;
     j["harmonics"] = plan.harmonics;
     j["symmetry"] = {{"kind", name_of(plan.symmetry.kind)}, {"isometries", plan.symmetry.elements.size()}};
     j["notes"] = plan.notes;

@@ -30,20 +30,24 @@ struct Preset {
     double region_error;             ///< see choose_regions()
     DirectionErrors budget;          ///< shares of the largest force
     std::uint32_t mean_frequency;    ///< of the directions that the map stores means for
+    double record_flows;             ///< where there are fewer flows than that at first, their records are longer
 };
 
+// The wake of a flow that has just begun swings two to seven times as strongly as later and pushes up to 14 % harder; it
+// takes some twenty lengths to fade (docs/bake.md, "The start").
 Preset preset(Quality quality) {
     switch (quality) {
         case Quality::draft:
-            return {2, 4, 18, 12, 6, 8, kDraftRegionError, {0, 0}, 6};
+            return {2, 4, 18, 12, 18, 8, kDraftRegionError, {0, 0}, 6, 0};
         case Quality::high:
-            return {4, 4, 0, 36, 12, 40, kHighRegionError, {0.03, 0.08}, 10};
+            return {4, 4, 0, 36, 20, 40, kHighRegionError, {0.03, 0.08}, 10, 66};
         default:
-            return {3, 3, 0, 24, 10, 20, kStandardRegionError, {0.06, 0.15}, 8};
+            return {3, 3, 0, 24, 20, 16, kStandardRegionError, {0.06, 0.15}, 8, 38};
     }
 }
 
 constexpr double overlap_share = 0.25;      ///< of the period, faded into its beginning
+constexpr double most_record = 2.5;        ///< times as long as a period and the overlap
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
 constexpr double most_more = 1.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
@@ -96,7 +100,7 @@ FlowCase base_case(const BakePlan& plan) {
     c.resolution = plan.options.resolution > 0 ? plan.options.resolution : preset(plan.options.quality).cells;
     c.reference_length = plan.reference_length;
     c.start_up = plan.start_up;
-    c.duration = plan.period + plan.overlap;
+    c.duration = plan.record;
     c.pictures = true;
     return c;
 }
@@ -215,6 +219,8 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.start_up = p.start_up;
     plan.period = p.period;
     plan.overlap = overlap_share * p.period;
+    plan.record = (p.period + plan.overlap) *
+                  std::clamp(p.record_flows / static_cast<double>(first.size()), 1.0, most_record);
     plan.harmonics = static_cast<std::uint32_t>(harmonics_per_length * plan.period);
     plan.samples = good_length(2 * plan.harmonics + 2);
 

@@ -42,15 +42,35 @@ std::vector<Vec3d> whole(const Fluctuation& f, std::uint32_t regions, std::uint3
     return out;
 }
 
-Fluctuation one_direction(const TaskResult& result, const Transfer& transfer, std::uint32_t regions,
-                          const PeriodicSpec& spec) {
-    const Seam seam = make_seam(whole_force(result), spec.period);
+/// Part of a record: a period and what is faded into its beginning.
+struct Stretch {
+    std::size_t begin = 0, length = 0;
+};
+
+/// One period after another, as many as there are; of a record that is hardly longer than one, all of it.
+std::vector<Stretch> stretches_of(std::size_t samples, std::size_t period) {
+    const std::size_t length = period + period / 4;
+    if (samples < length + period) return {{0, samples}};
+    std::vector<Stretch> out;
+    for (std::size_t begin = 0; begin + length <= samples; begin += period) out.push_back({begin, length});
+    return out;
+}
+
+std::vector<Vec3d> cut(const std::vector<Vec3d>& force, const Stretch& stretch) {
+    const auto begin = force.begin() + static_cast<std::ptrdiff_t>(stretch.begin);
+    return {begin, begin + static_cast<std::ptrdiff_t>(stretch.length)};
+}
+
+Fluctuation one_direction(const TaskResult& result, const Stretch& stretch, const Transfer& transfer,
+                          std::uint32_t regions, const PeriodicSpec& spec) {
+    const Seam seam = make_seam(cut(whole_force(result), stretch), spec.period);
     const std::vector<float> force = carried(result, transfer, regions);
     Fluctuation out(std::size_t{regions} * spec.samples * components);
-    std::vector<float> signal(result.samples);
+    std::vector<float> signal(stretch.length);
     for (std::size_t l = 0; l < regions; ++l) {
         for (std::size_t c = 0; c < components; ++c) {
-            for (std::size_t s = 0; s < signal.size(); ++s) signal[s] = force[(s * regions + l) * components + c];
+            for (std::size_t s = 0; s < signal.size(); ++s)
+                signal[s] = force[((stretch.begin + s) * regions + l) * components + c];
             const PeriodicSeries series = make_periodic(signal, seam, spec);
             for (std::size_t s = 0; s < spec.samples; ++s)
                 out[(l * spec.samples + s) * components + c] = series.fluctuation[s];
@@ -80,9 +100,8 @@ double share_of_lines(const Fluctuation& f, std::uint32_t regions, std::uint32_t
 
 /// How strongly the whole force swings, as the map will have it: of the periodic series. A record swings more, by what is
 /// slower than the period, of which it has not one cycle: what is left of its start, above all.
-double strength_of(const TaskResult& result, PeriodicSpec spec) {
+double strength_of(const std::vector<Vec3d>& force, PeriodicSpec spec) {
     spec.threshold = 0;
-    const std::vector<Vec3d> force = whole_force(result);
     const Seam seam = make_seam(force, spec.period);
     double square = 0;
     for (int c = 0; c < 3; ++c) {
@@ -94,14 +113,40 @@ double strength_of(const TaskResult& result, PeriodicSpec spec) {
     return std::sqrt(square);
 }
 
+/// A flow's strength is that of its whole record, since a period has a few sheddings only; its series is of the stretch that
+/// is nearest to it.
+struct FlowSwing {
+    double strength = 0;
+    Stretch stretch;
+    double of_stretch = 0;
+};
+
+FlowSwing swing_of(const TaskResult& result, const PeriodicSpec& spec) {
+    const std::vector<Vec3d> force = whole_force(result);
+    const std::vector<Stretch> stretches = stretches_of(force.size(), spec.period);
+    std::vector<double> strength;
+    double square = 0;
+    for (const Stretch& stretch : stretches) {
+        strength.push_back(strength_of(cut(force, stretch), spec));
+        square += strength.back() * strength.back() / static_cast<double>(stretches.size());
+    }
+    FlowSwing out;
+    out.strength = std::sqrt(square);
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < strength.size(); ++i)
+        if (std::fabs(strength[i] - out.strength) < std::fabs(strength[nearest] - out.strength)) nearest = i;
+    out.stretch = stretches[nearest];
+    out.of_stretch = strength[nearest];
+    return out;
+}
+
 /// The strengths over directions, by a fit of their logarithms: from one direction to another they change by factors.
 class Strengths {
 public:
-    Strengths(const std::vector<FitSite>& sites, const std::vector<const TaskResult*>& results,
-              const PeriodicSpec& spec)
+    Strengths(const std::vector<FitSite>& sites, const std::vector<FlowSwing>& swings)
         // Of a record a few sheddings long a strength is known to some tenths: too little to choose a fit by.
         : sites_(sites), fit_(sites, {1, 1e-2}) {
-        for (const TaskResult* result : results) strength_.push_back(strength_of(*result, spec));
+        for (const FlowSwing& swing : swings) strength_.push_back(swing.strength);
         constexpr double least = 1e-6;  // share of the largest
         const double floor = least * *std::max_element(strength_.begin(), strength_.end());
         for (double& s : strength_) s = std::max({s, floor, std::numeric_limits<double>::min()});
@@ -138,17 +183,21 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours_in(const Directi
 
 std::vector<Fluctuation> fluctuations(const RegionForces& forces, const std::vector<const TaskResult*>& results,
                                       std::uint32_t regions, const DirectionSet& directions, const PeriodicSpec& spec) {
-    const Strengths strengths(forces.known().sites(), results, spec);
+    std::vector<FlowSwing> swings;
+    for (const TaskResult* result : results) swings.push_back(swing_of(*result, spec));
+    const Strengths strengths(forces.known().sites(), swings);
     std::vector<Fluctuation> out;
     std::vector<std::vector<Vec3d>> wholes;
     for (std::uint32_t d = 0; d < directions.count(); ++d) {
         const Vec3d e = directions.direction(d);
         const RegionForces::Nearest from = forces.nearest(e);
-        Fluctuation f = one_direction(*results[from.flow], *from.transfer, regions, spec);
+        const FlowSwing& swing = swings[from.flow];
+        Fluctuation f = one_direction(*results[from.flow], swing.stretch, *from.transfer, regions, spec);
         // Between flows the strength is the fit's, not the nearest one's: within bounds, since regions may swing
         // strongly where the whole hardly does.
         double level = from.solved ? 1 : std::min(most_level, strengths.at(e) / strengths.of(from.flow));
         level /= share_of_lines(f, regions, spec.samples);
+        if (swing.of_stretch > 0) level *= swing.strength / swing.of_stretch;
         for (float& v : f) v *= static_cast<float>(level);
         wholes.push_back(whole(f, regions, spec.samples));
         out.push_back(std::move(f));

@@ -243,3 +243,60 @@ TEST_CASE("a turn about a long axis has cells across what turns", "[bake]") {
     }
     CHECK(seen == 3);
 }
+
+TEST_CASE("a bake's record is of a wake that has forgotten its start", "[bake]") {
+    // A slanted plate on a coarse grid, for a draft's start and record, and long after.
+    BakeOptions options = small_bake();
+    options.mesh = test::sample_path("plate.glb");
+    const BakePlan plan = plan_bake(options);
+    FlowCase c = plan.tasks.front().flow;
+    const double lengths = 60, record = c.duration, start = c.start_up;
+    c.direction = Vec3d{0.412, 0.880, 0.234} / length(Vec3d{0.412, 0.880, 0.234});
+    c.resolution = 6;
+    c.duration = lengths - start;
+    c.pictures = false;
+    c.threads = 1;
+    const FlowSeries series = solve_flow(plan.surface, plan.regions, c, [](const FlowState&) { return true; });
+    const double per_length = series.samples / c.duration;
+    const auto at = [&](double from) { return static_cast<std::uint32_t>(from * per_length); };
+    std::vector<Vec3d> force(series.samples);
+    for (std::uint32_t s = 0; s < series.samples; ++s)
+        for (std::size_t i = std::size_t{s} * series.regions * 3; i < std::size_t{s + 1} * series.regions * 3; i += 3)
+            for (int k = 0; k < 3; ++k)
+                force[s][k] += static_cast<double>(series.pressure[i + static_cast<std::size_t>(k)]) +
+                               static_cast<double>(series.friction[i + static_cast<std::size_t>(k)]);
+    const auto mean = [&](std::uint32_t first, std::uint32_t last) {
+        Vec3d sum;
+        for (std::uint32_t s = first; s < last; ++s) sum += force[s] / static_cast<double>(last - first);
+        return sum;
+    };
+    const auto swing = [&](std::uint32_t first, std::uint32_t last) {
+        const Vec3d middle = mean(first, last);
+        double square = 0;
+        for (std::uint32_t s = first; s < last; ++s)
+            square += dot(force[s] - middle, force[s] - middle) / static_cast<double>(last - first);
+        return std::sqrt(square);
+    };
+    const std::uint32_t all = series.samples, late = at(lengths - start - 25);
+    const Vec3d developed = mean(late, all);
+    INFO("mean " << length(mean(0, at(record)) - developed) / length(developed) << ", swing " << swing(0, at(record))
+                 << " and " << swing(late, all));
+    CHECK(length(mean(0, at(record)) - developed) < 0.03 * length(developed));
+    CHECK(swing(0, at(record)) < 2 * swing(late, all));
+}
+
+TEST_CASE("where symmetry leaves few flows their records are longer, but not a draft's", "[bake]") {
+    BakeOptions options;
+    options.mesh = test::sample_path("plate.glb");
+    options.quality = Quality::standard;
+    BakePlan plan = plan_bake(options);
+    CHECK(plan.record > 2 * (plan.period + plan.overlap));
+    for (const Task& task : plan.tasks) CHECK(task.flow.duration == plan.record);
+    options.symmetry = false;
+    plan = plan_bake(options);
+    CHECK(plan.record == plan.period + plan.overlap);
+    options.symmetry = true;
+    options.quality = Quality::draft;
+    plan = plan_bake(options);
+    CHECK(plan.record == plan.period + plan.overlap);
+}

@@ -343,6 +343,31 @@ TEST_CASE("a quick swing is as strong in straight lines between samples as the f
     }
 }
 
+TEST_CASE("of a long record the swing has the strength of the whole, not of one period", "[directions]") {
+    const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
+    const Regions regions = split_regions(box, 1);
+    const DirectionSet set(1);
+    const std::uint32_t period = 64, samples = 32;
+    std::vector<TaskResult> flows(set.count());
+    for (TaskResult& r : flows) {
+        r.interval = 1;
+        r.samples = 4 * period + period / 4;
+        r.regions = 1;
+        for (std::uint32_t s = 0; s < r.samples; ++s) {
+            const float at = 2 * 3.14159265f * static_cast<float>(s) / static_cast<float>(period);
+            // By turns weak and strong.
+            const float level = s / period % 2 ? 1.5f : 0.5f;
+            r.pressure.insert(r.pressure.end(), {level * std::sin(4 * at), 0, 0});
+            r.friction.insert(r.friction.end(), 3, 0);
+        }
+        r.torque.assign(std::size_t{r.samples} * 3, 0);
+    }
+    const Swinging body(box, regions, set, flows);
+    // Each stretch begins with a seam into its neighbour, which is three times as strong or a third: hence the tolerance.
+    for (const Fluctuation& f : fluctuations(body.forces, body.results, 1, set, {period, samples, 10, 0}))
+        CHECK(amplitude_read(f, 0, samples) == Approx(std::sqrt((0.25 + 2.25) / 2)).epsilon(0.1));
+}
+
 TEST_CASE("a flow that was solved keeps its own swing, whatever its neighbours'", "[directions]") {
     const Surface box = tessellate(test::box({0.1, 0.2, 0.5}), 0.05, 2000).surface;
     const Regions regions = split_regions(box, 6);
