@@ -75,7 +75,23 @@ def held_out_directions(count):
     return out
 
 
-LEAST_SWING = 0.01  # of the largest mean force: below, a ratio of strengths is one of nothings
+LEAST_SWING = 0.005  # of the largest mean force, which is what a map may err by rounding: below, a ratio is one of nothings
+
+# Direct runs, in lengths of the map: by then the wake is no longer that of the start (docs/bake.md), and some ten windows of
+# a draft tell its strength to 10 %.
+LONG_START = 34
+
+
+def long_duration(info):
+    return max(80, 4.25 * info["provenance"]["period_lengths"])
+
+
+def long_stretches(info):
+    """Of a period and a quarter, one period apart."""
+    period = info["provenance"]["period_lengths"]
+    return int((long_duration(info) - 1.25 * period) / period + 1e-9) + 1
+
+
 
 # Several speeds: a sphere 10 cm across in water, Reynolds number = speed * 1e5.
 SPEEDS = ("0.001", "0.00316", "0.01", "0.0316", "0.1")

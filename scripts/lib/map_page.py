@@ -4,16 +4,17 @@ from __future__ import annotations
 import datetime
 import math
 
-from map_cases import BODIES, LEAST_SWING, SPEED_PERCENT, SPIN_PERCENT
+from map_cases import BODIES, LEAST_SWING, LONG_START, SPEED_PERCENT, SPIN_PERCENT, long_duration, long_stretches
 
 
 FLUCTUATIONS = f"""## Fluctuations there
 
-How strongly the force swings about its mean (rms over the map's period), of the map over that of the run. Both are without what is slower than the
-period: of that a run has not one cycle, and most of it is what is left of its start; the last column but one says what share of
-the rms of the record as it is that leaves. A record is a few sheddings long, so the run itself knows its strength only to the error that stands
-there (of a Gaussian process with the run's spectrum; scripts/lib/map_swing.py). Directions in which the run swings by less than
-{100 * LEAST_SWING:.0f} % of the largest mean force are not in the ratios; the last column has the map's strength there, of that force."""
+How strongly the force swings about its mean (rms over the map's period, without what is slower), of the map over that of the
+same direct run. The run's strength is that of all its stretches of a period, its error what these scatter by
+(scripts/lib/map_swing.py). A map's own flow is one such stretch: by chance it is off by what the last column but one says, so
+that is how near to a run a single direction can be; the mean over directions says whether maps swing too strongly.
+Directions in which the run swings by less than {100 * LEAST_SWING:.1f} % of the largest mean force are not in the ratios; the last column has
+the map's strength there, of that force."""
 
 
 def table(head, rows):
@@ -74,24 +75,23 @@ def fluctuations_table(bakes):
     rows = []
     for made in bakes:
         least = LEAST_SWING * made["peak"]
-        swings = [(math.hypot(*one["map"]["force_rms"]), *one["swing"], math.hypot(*one["run"]["force_rms"]))
-                  for one in made["held"] if one["swing"]]
+        swings = [(math.hypot(*one["map"]["force_rms"]), *one["swing"]) for one in made["held"] if one["swing"]]
         strong = [swing for swing in swings if swing[1] >= least]
         weak = [swing[0] / made["peak"] for swing in swings if swing[1] < least]
-        if not strong:
-            continue
-        logs = [math.log(max(felt, 1e-3 * run) / run) for felt, run, _, _ in strong]
-        mean = sum(logs) / len(logs)
-        error = math.sqrt(sum((l - mean)**2 for l in logs) / max(1, len(logs) - 1) / len(logs))
-        own = math.sqrt(sum(u * u for _, _, u, _ in strong) / len(strong))
-        record = math.exp(sum(math.log(run / whole) for _, run, _, whole in strong) / len(strong))
-        # A map's strength comes from runs like this one: the difference of two such has sqrt(2) the error of one.
-        within = sum(abs(l) <= 2 * math.sqrt(2) * u for l, (_, _, u, _) in zip(logs, strong))
-        rows.append((made["bake"].name, f"{math.exp(mean):.2f} (-{percent(1 - math.exp(-error), 0)}, +{percent(math.exp(error) - 1, 0)})",
-                     f"{math.exp(min(logs)):.2f} to {math.exp(max(logs)):.2f}", sum(abs(math.exp(l) - 1) <= 0.1 for l in logs),
-                     f"{within} of {len(strong)}", percent(own, 0), f"{record:.2f}", percent(max(weak), 1) if weak else "–"))
-    return table(("map", "strength, map over run (geometric mean, its error)", "range", "within 10 %", "within twice what two runs differ by",
-                  "a run's own error", "of the record's rms", "map at most where runs swing less"), rows)
+        row = [made["bake"].name, "–", "–", "–", "–", "–", percent(max(weak), 1) if weak else "–"]
+        if strong:
+            logs = [math.log(max(felt, 1e-3 * run) / run) for felt, run, _ in strong]
+            mean = sum(logs) / len(logs)
+            error = math.sqrt(sum((l - mean)**2 for l in logs) / max(1, len(logs) - 1) / len(logs))
+            own = math.sqrt(sum(u * u for _, _, u in strong) / len(strong))
+            row[1:6] = [f"{math.exp(mean):.2f} (-{percent(1 - math.exp(-error), 0)}, +{percent(math.exp(error) - 1, 0)})" if len(logs) > 1 else f"{math.exp(mean):.2f}",
+                        f"{math.exp(min(logs)):.2f} to {math.exp(max(logs)):.2f}",
+                        f"{sum(abs(math.exp(l) - 1) <= 0.1 for l in logs)} of {len(logs)}", percent(own, 0),
+                        percent(own * math.sqrt(long_stretches(made["info"])), 0)]
+        if strong or weak:
+            rows.append(row)
+    return table(("map", "strength, map over run (geometric mean, its error)", "range", "within 10 %", "the run's own error",
+                  "that of one period", "map at most where runs swing less"), rows)
 
 
 def sizes_table(bakes):
@@ -133,8 +133,9 @@ digits of its SHA-256, direct runs since they have series by that of the solver'
         parts.append(f"Not run: {len(missing)} steps, among them {', '.join(missing[:4])}.")
     if bakes:
         parts += ["## Bakes", bakes_table(bakes),
-                  "## Directions held out\n\nEight directions all round that no map was made from; the direct run has the cells, the start and the duration of the "
-                  "map's own flows. *Stated* is what the map says of itself: each of its flows predicted from the others.",
+                  "## Directions held out\n\nEight directions all round that no map was made from. The direct run has the cells of the map's flows, but its record begins "
+                  f"after {LONG_START} lengths and lasts {long_duration(bakes[0]['info']):.0f}: what the map's own flows have of their start, and of chance, is a part of the error. "
+                  "*Stated* is what the map says of itself: each of its flows predicted from the others.",
                   directions_table(bakes),
                   FLUCTUATIONS, fluctuations_table(bakes),
                   "## Size", sizes_table(bakes)]
