@@ -47,7 +47,7 @@ Preset preset(Quality quality) {
 }
 
 constexpr double overlap_share = 0.25;      ///< of the period, faded into its beginning
-constexpr double most_record = 2.5;        ///< times as long as a period and the overlap
+constexpr double most_record = 2.5;         ///< times as long as a period and the overlap
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
 constexpr double most_more = 1.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
@@ -219,8 +219,8 @@ BakePlan plan_bake(const BakeOptions& options) {
     plan.start_up = p.start_up;
     plan.period = p.period;
     plan.overlap = overlap_share * p.period;
-    plan.record = (p.period + plan.overlap) *
-                  std::clamp(p.record_flows / static_cast<double>(first.size()), 1.0, most_record);
+    plan.record =
+        (p.period + plan.overlap) * std::clamp(p.record_flows / static_cast<double>(first.size()), 1.0, most_record);
     plan.harmonics = static_cast<std::uint32_t>(harmonics_per_length * plan.period);
     plan.samples = good_length(2 * plan.harmonics + 2);
 
