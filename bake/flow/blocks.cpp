@@ -19,7 +19,10 @@ struct Room {
 // A slab's wake closes late: with the border 4 heights behind, not 10, a plate across the stream at Re 1e4 shed a tenth
 // too fast.
 constexpr Room wall_layer{0.12, 0.15, 0.3}, wake{0.4, 0.5, 2}, wake_section{0.6, 1.0, 4}, wake_slab{0.6, 1.0, 10};
-constexpr double most_in_wake = 36;  // cells a size
+// The layers that leave the front edges of a section stay up to 0.6 heights off its side, and roll up within 1.5 behind
+// it: that is where a slab's cells count.
+constexpr Room near_slab{0.3, 0.6, 1.5};
+constexpr double most_in_wake = 36, most_in_wake_slab = 24;  // cells a size
 // Far away blockage is 0.2 %. In two dimensions a body is felt much farther.
 constexpr Room far_away{8, 10, 14}, far_section{30, 30, 40};
 // Cells a size in the coarsest block.
@@ -30,6 +33,7 @@ constexpr double most_cells = 1e6;
 double between(double inner, double outer, double share) { return inner * std::pow(outer / inner, share); }
 
 Room room(int level, int levels, int wake_level, bool section, bool slab) {
+    if (slab && level + 1 == wake_level) return near_slab;
     if (level < wake_level) return wall_layer * (1 << level);
     const double share =
         levels - 1 > wake_level ? static_cast<double>(level - wake_level) / (levels - 1 - wake_level) : 1.0;
@@ -79,13 +83,15 @@ int block_count(double bulk, bool section) {
 
 std::vector<Block> plan_blocks(const BlockRequest& q) {
     const int levels = q.radius > 0 ? turning_block_count(q.radius) : block_count(q.bulk, q.section);
+    const bool slab = q.section && q.layers > 1;
+    const double most = slab ? most_in_wake_slab : most_in_wake;
     int wake_level = 0;
-    while (wake_level + 1 < levels && q.bulk / (1 << wake_level) > most_in_wake) ++wake_level;
+    while (wake_level + 1 < levels && q.bulk / (1 << wake_level) > most) ++wake_level;
     std::vector<Block> blocks(static_cast<std::size_t>(levels));
     Vec3d low = q.low, high = q.high;  // of what a block must hold: the body, then the last block
     for (int l = 0; l < levels; ++l) {
         const double cell = 1 << l, gap = (l == 0 ? least_cells : least_gap) * cell;
-        Room space = room(l, levels, wake_level, q.section, q.section && q.layers > 1) * q.bulk;
+        Room space = room(l, levels, wake_level, q.section, slab) * q.bulk;
         if (q.still) space.behind = space.ahead;
         Vec3d wanted_low = q.low - Vec3d{space.ahead, space.beside, space.beside};
         Vec3d wanted_high = q.high + Vec3d{space.behind, space.beside, space.beside};

@@ -355,6 +355,26 @@ TEST_CASE("the layers of a slab differ once its wake is three-dimensional", "[fl
     CHECK(along > 1e-3 * across);
 }
 
+TEST_CASE("a slab's finest cells hold the layers that leave its edges", "[flow]") {
+    FlowCase c = unit_case(1e4, 36, 10, 10);
+    c.section = true;
+    c.slab = 4;
+    const Surface body = test::box({5, 1, 2});
+    for (const double cells : {24.0, 36.0, 48.0}) {
+        INFO(cells << " cells");
+        c.resolution = cells;
+        const FlowPlan plan = plan_flow(body, c);
+        const FlowBlock &finest = plan.blocks.front(), &wake = plan.blocks[cells > 24 ? 1 : 0];
+        const double border = 2 * wake.cell;
+        CHECK(finest.low.x <= -2.5 - 0.3 + border);
+        CHECK(finest.high.x >= 2.5 + 1.5 - border);
+        CHECK(finest.low.y <= -0.5 - 0.6 + border);
+        CHECK(finest.high.y >= 0.5 + 0.6 - border);
+        CHECK(wake.high.x >= 2.5 + 10 - border);
+        CHECK(wake.cell <= 1 / 12.0);
+    }
+}
+
 TEST_CASE("a run ends when it knows enough, or when its time is up", "[flow]") {
     const Surface body = test::box({1, 1, 1});
     FlowCase c = unit_case(100, 8, 6, 200);
