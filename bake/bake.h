@@ -89,8 +89,8 @@ struct BakeReport {
     };
     std::vector<Flow> flows;           ///< one a task
     DirectionErrors direction_errors;  ///< of the base speed's means, each flow predicted from the others
-    double uncertainty = 0;            ///< of the worst flow at the base speed
-    double added_mass_error = 0;       ///< AddedMass::error
+    double uncertainty = 0;  ///< standard error of the worst mean drag at the base speed, share of the largest force
+    double added_mass_error = 0;  ///< AddedMass::error
 };
 
 /// Throws BakeError or MeshError, naming what cannot be.

@@ -135,7 +135,7 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
 
     MapFacts& facts = map->facts;
     const double reynolds = options.speed * plan.reference_length / options.viscosity;
-    double solved = reynolds;
+    double solved = reynolds, largest = 0;
     report = {};
     std::vector<FlowMeans> means;
     for (std::size_t k = 0; k < results.size(); ++k) {
@@ -143,8 +143,11 @@ std::unique_ptr<Map> make_map(const BakePlan& plan, const std::vector<TaskResult
         report.flows.push_back(describe(plan.tasks[k], results[k], means[k]));
         if (!plan.tasks[k].is_stream(options.speed)) continue;
         solved = std::min(solved, results[k].plan.reynolds_solved);
-        report.uncertainty = std::max(report.uncertainty, report.flows[k].uncertainty);
+        const double drag = std::fabs(dot(means[k].force, plan.tasks[k].flow.direction));
+        report.uncertainty = std::max(report.uncertainty, report.flows[k].uncertainty * drag);
+        largest = std::max(largest, length(means[k].force));
     }
+    if (largest > 0) report.uncertainty /= largest;
 
     const Landing landing(plan.surface, plan.symmetry.tolerance);
     Transfers transfers({plan.surface, plan.patches, plan.regions, plan.symmetry.centre, landing});

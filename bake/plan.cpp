@@ -101,6 +101,7 @@ FlowCase base_case(const BakePlan& plan) {
     c.reference_length = plan.reference_length;
     c.start_up = plan.start_up;
     c.duration = plan.record;
+    c.grid_error = true;  // the start is then run on half the resolution
     c.pictures = true;
     return c;
 }

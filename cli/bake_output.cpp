@@ -38,10 +38,11 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
                      "and %.0f %% of this quality: take a higher --quality, --resolution or --directions\n",
                      100 * between.rms, 100 * between.worst, 100 * plan.budget.rms, 100 * plan.budget.worst);
     if (worst > bake::kNotedUncertainty)
-        std::fprintf(
-            stderr,
-            "note: the mean drag of a direction is uncertain by %.0f %%: take a higher --quality or --resolution\n",
-            100 * worst);
+        std::fprintf(stderr,
+                     "note: the mean drag of a direction is uncertain by %.0f %% of the largest force: take a higher "
+                     "--quality or "
+                     "--resolution\n",
+                     100 * worst);
     const double mlups = run.seconds > 0 ? run.updates / run.seconds / 1e6 : 0;
     if (run.json) {
         nlohmann::ordered_json j{{"file", out},
@@ -69,9 +70,10 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
     if (between.worst > 0)
         std::snprintf(predicted, sizeof predicted, "%.1f %% rms, %.1f %% at worst", 100 * between.rms,
                       100 * between.worst);
-    std::printf("shares of the largest force: between directions %s; rounded to %.2g %%\n", predicted,
-                100 * static_cast<double>(map.facts.quantisation_error));
-    std::printf("mean drag is uncertain by %.1f %% (statistics of the worst direction)\n", 100 * worst);
+    std::printf(
+        "shares of the largest force: between directions %s; rounded to %.2g %%;\n"
+        "mean drag uncertain by %.1f %% (grid and statistics of the worst direction)\n",
+        predicted, 100 * static_cast<double>(map.facts.quantisation_error), 100 * worst);
 }
 
 }  // namespace

@@ -235,7 +235,7 @@ typedef struct frm_map_info {
     uint32_t has_added_mass;         /* 1: frm_map_get_added_mass has an answer */
     float direction_error_rms;   /* of the mean force in directions that the bake held out, as a share of the peak */
     float direction_error_worst; /* force, and the worst of them; 0: not known */
-    float uncertainty;           /* standard error of the mean drag as a share of it, worst direction; 0: not known */
+    float uncertainty;           /* standard error of the worst mean drag, share of the largest force; 0: not known */
     uint32_t reserved_2;
 } frm_map_info;
 

@@ -163,12 +163,12 @@ FRM_API frm_status FRM_CALL frm_bake_get_map(frm_bake bake, void *data, uint64_t
 /* How good the map is, as JSON: two-call rule. FRM_ERROR_STATE unless done. [owner]
  *
  * "errors" has, as shares: "direction_rms" and "direction_worst" (each flow's mean force as the others predict it, of
- * the largest force), "rounding", "uncertainty" (of the worst flow's mean drag), "added_mass", and what the regions
- * cost ("regions", of which "wet_ratio", "velocity", "arm"). "budgets" has what is asked of some of them. "notes" are
- * those of frm_bake_get_notes that are of the mesh. "flows" has one object a flow: "name", "kind" ("stream" or "spin"),
- * "direction" (of a spin its axis), "speed" (m/s; of a spin rad/s), "cd" and its "uncertainty", "left_out" (how far the
- * others are off that flow). null: not known, or not asked. Names are those of bake.json, which `frm bake --report`
- * writes; more may join them. */
+ * the largest force), "rounding", "uncertainty" (of the worst flow's mean drag, likewise), "added_mass", and what the
+ * regions cost ("regions", of which "wet_ratio", "velocity", "arm"). "budgets" has what is asked of some of them.
+ * "notes" are those of frm_bake_get_notes that are of the mesh. "flows" has one object a flow: "name", "kind" ("stream"
+ * or "spin"), "direction" (of a spin its axis), "speed" (m/s; of a spin rad/s), "cd" and its "uncertainty", "left_out"
+ * (how far the others are off that flow). null: not known, or not asked. Names are those of bake.json, which
+ * `frm bake --report` writes; more may join them. */
 FRM_API frm_status FRM_CALL frm_bake_get_report(frm_bake bake, char *text, uint64_t capacity, uint64_t *size);
 
 /* Writes the map to a file, which appears whole or not at all and replaces an older one. FRM_ERROR_STATE unless done,

@@ -186,6 +186,20 @@ TEST_CASE("the flows of further speeds and spins are the same job", "[bake]") {
     const std::unique_ptr<Map> map = make_map(plan, results, report);
     CHECK(map->speeds.size() == 2);
     CHECK(map->spin.rate > 0);
+    // Of the largest force: a drag that is small beside it may be uncertain by more of itself.
+    double most = 0, largest = 0;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        const FlowCase& flow = plan.tasks[k].flow;
+        if (!plan.tasks[k].is_stream(options.speed)) continue;
+        const TaskResult& r = results[k];
+        Vec3d mean;
+        for (std::size_t i = 0; i < r.pressure.size(); ++i)
+            mean[static_cast<int>(i % 3)] += static_cast<double>(r.pressure[i] + r.friction[i]) / r.samples;
+        most = std::max(most, r.uncertainty.total() * std::fabs(dot(mean, flow.direction)));
+        largest = std::max(largest, length(mean));
+    }
+    CHECK(report.uncertainty == Approx(most / largest).epsilon(1e-6));
+    CHECK(static_cast<double>(map->facts.uncertainty) == Approx(report.uncertainty).epsilon(1e-6));
     REQUIRE(map->spin.force.size() == 6 * map->sources.size());
     // Torque of a turn about -x is that about +x, the other way round.
     const DirectionSet axes(1);
@@ -291,7 +305,10 @@ TEST_CASE("where symmetry leaves few flows their records are longer, but not a d
     options.quality = Quality::standard;
     BakePlan plan = plan_bake(options);
     CHECK(plan.record > 2 * (plan.period + plan.overlap));
-    for (const Task& task : plan.tasks) CHECK(task.flow.duration == plan.record);
+    for (const Task& task : plan.tasks) {
+        CHECK(task.flow.duration == plan.record);
+        CHECK(task.flow.grid_error);
+    }
     options.symmetry = false;
     plan = plan_bake(options);
     CHECK(plan.record == plan.period + plan.overlap);

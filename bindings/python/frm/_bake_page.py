@@ -50,8 +50,8 @@ def _judged(bake: Bake):
          "one wet ratio, velocity and point of attack a region, for a half-immersed, turning body; share of the rms "
          "force and torque"),
         ("The flows' mean drag", e["uncertainty"], b["uncertainty"],
-         "of the least certain flow at the base speed: its statistics and the far field. The grid's own error is not "
-         "measured in a bake")]
+         "of the least certain flow at the base speed: its grid (half of the difference to half the resolution), its "
+         "statistics and the far field; share of the largest mean force")]
 
 
 def _verdict(error, budget) -> str:
@@ -83,8 +83,8 @@ def _notes(bake: Bake) -> list[str]:
                      f"and {_percent(budgets['direction_worst'])} of this quality: take a higher --quality, "
                      "--resolution or --directions.")
     if errors["uncertainty"] > budgets["uncertainty"]:
-        notes.append(f"The mean drag of a direction is uncertain by {_percent(errors['uncertainty'])}: take a higher "
-                     "--quality or --resolution.")
+        notes.append(f"The mean drag of a direction is uncertain by {_percent(errors['uncertainty'])} of the largest "
+                     "force: take a higher --quality or --resolution.")
     return notes
 
 
