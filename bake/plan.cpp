@@ -139,6 +139,8 @@ void add_spins(BakePlan& plan, const SurfaceProperties& shape) {
         c.speed = 0;
         c.spin = axis * plan.spin_rate;
         c.spin_centre = shape.centroid;
+        // A turning body stays in its own wake: after four lengths that is still the coarse cells' (docs/bake.md, "Spin").
+        c.grid_error = false;
         const double across = 2 * farthest([&](const Vec3d& arm) { return cross(axis, arm); });
         c.reference_length = std::min(c.reference_length, across);
         const int along = axis.x != 0 ? 0 : axis.y != 0 ? 1 : 2;

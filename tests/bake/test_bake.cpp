@@ -245,6 +245,7 @@ TEST_CASE("a turn about a long axis has cells across what turns", "[bake]") {
     const Vec3d centre = measure(plan.surface).centroid;
     int seen = 0;
     for (const Task& task : plan.tasks) {
+        CHECK(task.flow.grid_error == (task.kind == TaskKind::stream));
         if (task.kind != TaskKind::spin) continue;
         const Vec3d axis = task.flow.spin / length(task.flow.spin);
         double radius = 0;
