@@ -47,7 +47,7 @@ void print_map(const frm_map_info& i, const nlohmann::ordered_json& made) {
     row("quantisation error", "%.2g %% of the peak force", 100 * d(i.quantisation_error));
     percent("direction error", i.direction_error_rms, "the peak force, rms, in directions held out of the bake");
     percent("worst of these", i.direction_error_worst, "the peak force");
-    percent("uncertainty", i.uncertainty, "the worst mean drag (standard error; of the largest force)");
+    percent("uncertainty", i.uncertainty, "the peak force (the mean drag, standard error, worst direction)");
     row("surface", "%u triangles, %.4g m^2, encloses %.4g m^3", i.triangles, d(i.area), d(i.volume));
     row("bounds", "(%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m", d(i.bounds_low.x), d(i.bounds_low.y), d(i.bounds_low.z),
         d(i.bounds_high.x), d(i.bounds_high.y), d(i.bounds_high.z));

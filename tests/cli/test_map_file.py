@@ -46,7 +46,7 @@ def test_info_of_a_full_map(good, full):
     assert j["uncertainty"] == pytest.approx(0.015) and 0 < j["quantisation_error"] <= 3e-3
     text = good("info", full).out
     for words in ("38 for means, 18 for fluctuations", "means at 3 speeds", "2 % of the peak", "7 % of the peak",
-                  "1.5 % of the mean drag"):
+                  "1.5 % of the peak force (the mean drag"):
         assert words in text
 
 
