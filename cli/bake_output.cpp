@@ -40,8 +40,7 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
     if (worst > bake::kNotedUncertainty)
         std::fprintf(stderr,
                      "note: the mean drag of a direction is uncertain by %.0f %% of the largest force: take a higher "
-                     "--quality or "
-                     "--resolution\n",
+                     "--quality or --resolution\n",
                      100 * worst);
     const double mlups = run.seconds > 0 ? run.updates / run.seconds / 1e6 : 0;
     if (run.json) {

@@ -61,9 +61,8 @@ std::vector<Vec3d> cut(const std::vector<Vec3d>& force, const Stretch& stretch) 
     return {begin, begin + static_cast<std::ptrdiff_t>(stretch.length)};
 }
 
-Fluctuation one_direction(const TaskResult& result, const Stretch& stretch, const Transfer& transfer,
+Fluctuation one_direction(const TaskResult& result, const Stretch& stretch, const Seam& seam, const Transfer& transfer,
                           std::uint32_t regions, const PeriodicSpec& spec) {
-    const Seam seam = make_seam(cut(whole_force(result), stretch), spec.period);
     const std::vector<float> force = carried(result, transfer, regions);
     Fluctuation out(std::size_t{regions} * spec.samples * components);
     std::vector<float> signal(stretch.length);
@@ -100,9 +99,8 @@ double share_of_lines(const Fluctuation& f, std::uint32_t regions, std::uint32_t
 
 /// How strongly the whole force swings, as the map will have it: of the periodic series. A record swings more, by what is
 /// slower than the period, of which it has not one cycle: what is left of its start, above all.
-double strength_of(const std::vector<Vec3d>& force, PeriodicSpec spec) {
+double strength_of(const std::vector<Vec3d>& force, const Seam& seam, PeriodicSpec spec) {
     spec.threshold = 0;
-    const Seam seam = make_seam(force, spec.period);
     double square = 0;
     for (int c = 0; c < 3; ++c) {
         std::vector<float> signal;
@@ -118,16 +116,20 @@ double strength_of(const std::vector<Vec3d>& force, PeriodicSpec spec) {
 struct FlowSwing {
     double strength = 0;
     Stretch stretch;
+    Seam seam;  ///< of the stretch
     double of_stretch = 0;
 };
 
 FlowSwing swing_of(const TaskResult& result, const PeriodicSpec& spec) {
     const std::vector<Vec3d> force = whole_force(result);
     const std::vector<Stretch> stretches = stretches_of(force.size(), spec.period);
+    std::vector<Seam> seams;
     std::vector<double> strength;
     double square = 0;
     for (const Stretch& stretch : stretches) {
-        strength.push_back(strength_of(cut(force, stretch), spec));
+        const std::vector<Vec3d> part = cut(force, stretch);
+        seams.push_back(make_seam(part, spec.period));
+        strength.push_back(strength_of(part, seams.back(), spec));
         square += strength.back() * strength.back() / static_cast<double>(stretches.size());
     }
     FlowSwing out;
@@ -136,6 +138,7 @@ FlowSwing swing_of(const TaskResult& result, const PeriodicSpec& spec) {
     for (std::size_t i = 1; i < strength.size(); ++i)
         if (std::fabs(strength[i] - out.strength) < std::fabs(strength[nearest] - out.strength)) nearest = i;
     out.stretch = stretches[nearest];
+    out.seam = seams[nearest];
     out.of_stretch = strength[nearest];
     return out;
 }
@@ -192,7 +195,7 @@ std::vector<Fluctuation> fluctuations(const RegionForces& forces, const std::vec
         const Vec3d e = directions.direction(d);
         const RegionForces::Nearest from = forces.nearest(e);
         const FlowSwing& swing = swings[from.flow];
-        Fluctuation f = one_direction(*results[from.flow], swing.stretch, *from.transfer, regions, spec);
+        Fluctuation f = one_direction(*results[from.flow], swing.stretch, swing.seam, *from.transfer, regions, spec);
         // Between flows the strength is the fit's, not the nearest one's: within bounds, since regions may swing
         // strongly where the whole hardly does.
         double level = from.solved ? 1 : std::min(most_level, strengths.at(e) / strengths.of(from.flow));

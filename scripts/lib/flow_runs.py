@@ -122,21 +122,24 @@ class Runs:
         if self.begins(case) != record["begins"]:
             return None
         record["solver"] = self.solver
-        write_whole(self.path(case), json.dumps(record, indent=2).encode() + b"\n")
+        self.keep(case, record)
         return record
+
+    def keep(self, case, record):
+        write_whole(self.path(case), json.dumps(record, indent=2).encode() + b"\n")
+
+    def ask(self, words, longest=None):
+        """What the program says to a command line, given `longest` seconds."""
+        return subprocess.run([str(self.program), *words], cwd=self.out, capture_output=True, text=True, errors="replace",
+                              timeout=longest, stdin=subprocess.DEVNULL)
 
     def begins(self, case):
         """A hash of all that the case's first length travelled gives, and of its run on half the resolution; or None."""
         words = case.command()
         for option in ("--start-up", "--duration"):
             words[words.index(option) + 1] = "0.5"
-        done = subprocess.run([str(self.program), *words], cwd=self.out, capture_output=True, text=True, errors="replace",
-                              stdin=subprocess.DEVNULL)
-        try:
-            result = json.loads(done.stdout) if done.returncode == 0 else None
-        except ValueError:
-            result = None
-        if not isinstance(result, dict) or result.get("ending") == "cancelled":
+        result = self.outcome(self.ask(words)).get("result")
+        if result is None:
             return None
         bits = {key: value for key, value in result.items() if key not in ("seconds", "mlups")}
         return hashlib.sha256(json.dumps(bits, sort_keys=True).encode()).hexdigest()[:16]
@@ -148,17 +151,16 @@ class Runs:
                   "started": datetime.datetime.now().astimezone().isoformat(timespec="seconds")}
         began = time.monotonic()
         try:
-            done = subprocess.run([str(self.program), *case.command()], cwd=self.out, capture_output=True, text=True,
-                                  errors="replace", timeout=longest, stdin=subprocess.DEVNULL)
-            record.update(self.outcome(done))
+            record.update(self.outcome(self.ask(case.command(), longest)))
         except subprocess.TimeoutExpired:
             record["error"] = f"not done after {longest:g} s"
         except OSError as error:
             record["error"] = f"{self.program}: {error.strerror}"
         record["wall_seconds"] = round(time.monotonic() - began, 3)
+        self.keep(case, record)
         if "error" not in record:
             record["begins"] = self.begins(case)
-        write_whole(self.path(case), json.dumps(record, indent=2).encode() + b"\n")
+            self.keep(case, record)
         return record
 
     @staticmethod

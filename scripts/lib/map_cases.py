@@ -86,13 +86,6 @@ def long_duration(info):
     return max(80, 4.25 * info["provenance"]["period_lengths"])
 
 
-def long_stretches(info):
-    """Of a period and a quarter, one period apart."""
-    period = info["provenance"]["period_lengths"]
-    return int((long_duration(info) - 1.25 * period) / period + 1e-9) + 1
-
-
-
 # Several speeds: a sphere 10 cm across in water, Reynolds number = speed * 1e5.
 SPEEDS = ("0.001", "0.00316", "0.01", "0.0316", "0.1")
 BASE_SPEED = "0.01"

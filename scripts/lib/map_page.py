@@ -4,7 +4,7 @@ from __future__ import annotations
 import datetime
 import math
 
-from map_cases import BODIES, LEAST_SWING, LONG_START, SPEED_PERCENT, SPIN_PERCENT, long_duration, long_stretches
+from map_cases import BODIES, LEAST_SWING, LONG_START, SPEED_PERCENT, SPIN_PERCENT, long_duration
 
 
 FLUCTUATIONS = f"""## Fluctuations there
@@ -80,14 +80,15 @@ def fluctuations_table(bakes):
         weak = [swing[0] / made["peak"] for swing in swings if swing[1] < least]
         row = [made["bake"].name, "–", "–", "–", "–", "–", percent(max(weak), 1) if weak else "–"]
         if strong:
-            logs = [math.log(max(felt, 1e-3 * run) / run) for felt, run, _ in strong]
+            logs = [math.log(max(felt, 1e-3 * run) / run) for felt, run, _, _ in strong]
             mean = sum(logs) / len(logs)
             error = math.sqrt(sum((l - mean)**2 for l in logs) / max(1, len(logs) - 1) / len(logs))
-            own = math.sqrt(sum(u * u for _, _, u in strong) / len(strong))
+            own = math.sqrt(sum(u * u for _, _, u, _ in strong) / len(strong))
+            of_one = math.sqrt(sum(u * u * n for _, _, u, n in strong) / len(strong))
             row[1:6] = [f"{math.exp(mean):.2f} (-{percent(1 - math.exp(-error), 0)}, +{percent(math.exp(error) - 1, 0)})" if len(logs) > 1 else f"{math.exp(mean):.2f}",
                         f"{math.exp(min(logs)):.2f} to {math.exp(max(logs)):.2f}",
                         f"{sum(abs(math.exp(l) - 1) <= 0.1 for l in logs)} of {len(logs)}", percent(own, 0),
-                        percent(own * math.sqrt(long_stretches(made["info"])), 0)]
+                        percent(of_one, 0)]
         if strong or weak:
             rows.append(row)
     return table(("map", "strength, map over run (geometric mean, its error)", "range", "within 10 %", "the run's own error",

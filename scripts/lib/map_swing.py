@@ -22,7 +22,7 @@ def periodic(force, period):
 
 
 def of_force(force, duration, period_lengths, harmonics):
-    """(strength, its standard error as a share of it) of a force [sample][component] over `duration` lengths: of each
+    """(strength, its standard error as a share of it, stretches) of a force [sample][component] over `duration` lengths: of each
     stretch that the bake would have made a period of (a period and a quarter, one period apart), with the map's harmonics,
     the root of the mean square over all. What is slower than the period is left out, as it is of the map. The error is
     that of the mean of the stretches, as if they were independent."""
@@ -35,9 +35,9 @@ def of_force(force, duration, period_lengths, harmonics):
         squares.append(2 * (numpy.abs(numpy.fft.rfft(one, axis=0)[1:harmonics + 1] / period)**2).sum())
     mean = sum(squares) / len(squares)
     if not mean > 0 or len(squares) < 2:
-        return math.sqrt(mean), 0.0
+        return math.sqrt(mean), 0.0, len(squares)
     spread = math.sqrt(sum((s - mean)**2 for s in squares) / (len(squares) - 1))
-    return math.sqrt(mean), 0.5 * spread / mean / math.sqrt(len(squares))
+    return math.sqrt(mean), 0.5 * spread / mean / math.sqrt(len(squares)), len(squares)
 
 
 def of_run(path, info, duration):
