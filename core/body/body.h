@@ -9,6 +9,7 @@
 
 #include "core/body/source_streams.h"
 #include "core/body/volume_elements.h"
+#include "core/body/wave_account.h"
 #include "core/map/map.h"
 #include "core/math/quat.h"
 #include "core/model.h"
@@ -89,6 +90,7 @@ struct Body {
     SourceStreams streams;                   ///< of the last tick
     std::optional<Footprint> footprint;      ///< while the world has water
     std::optional<VolumeElements> elements;  ///< while it has a footprint: what is laid into it
+    std::optional<WaveAccount> account;      ///< while it has a footprint: of the energy that goes by it
 
     Forces forces;
     float displaced_volume = 0, wet_area = 0, relative_speed = 0;
@@ -121,6 +123,9 @@ struct Body {
     float radius() const;
 };
 
+/// Where the centre of the body's box lies over water whose cell `origin` the body's origin is in.
+GridPlacement placement(const Body& body, const GridOrigin& origin, float cells_per_metre);
+
 /// What of the surface is wet (section 6.2) and the hydrostatic force on it (Eqs. 1, 4 and 5). The water is a plane over
 /// each cluster of triangles: clusters that it leaves wholly wet or dry take one evaluation, the triangles of the others
 /// an exact clip. Under a calm surface a body that is wholly wet or dry takes one evaluation itself.
@@ -130,6 +135,11 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
 /// `spread`, the wider the deeper. `keep_still`: a body of which no point has moved by a thousandth of a cell since keeps
 /// what was laid; its volume under the surface is off by less than that times the area of its waterline.
 void lay_displacement(Body& body, float level, bool spread, bool keep_still = true);
+
+/// What that changes in `water` beyond what the body pays for it goes to the body's account (WaveAccount::charge), for a
+/// fluid that weighs `weight`, N/m^3. After lay_displacement, and before the water has it.
+void charge_displacement(Body& body, const Field& water, const GridOrigin& origin, float level, float weight, float dt,
+                         float half_step, float* scratch);
 
 /// Instead: all of the body's volume counts as even over all of the water (FRM_SKIP_DEEP_BODIES).
 void leave_displacement(Body& body);

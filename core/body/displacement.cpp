@@ -32,6 +32,7 @@ double volume_of(const Body& body, float cell) {
 }  // namespace
 
 void leave_displacement(Body& body) {
+    body.account->forget();
     body.laid_at = body.def.pose.position;
     body.laid_rotation = body.rotation;
     body.footprint->leave(volume_of(body, body.footprint->cell()));
@@ -91,6 +92,15 @@ void lay_displacement(Body& body, float level, bool spread, bool keep_still) {
     }
     footprint.leave(left_over * static_cast<double>(to_amount));
     footprint.gather();
+}
+
+void charge_displacement(Body& body, const Field& water, const GridOrigin& origin, float level, float weight, float dt,
+                         float half_step, float* scratch) {
+    if (!body.footprint->changed()) return body.account->forget();
+    const float cell = water.def().cell, scale = body.def.scale;
+    const Vec3f& up = body.rotation.row2;
+    const Immersion now{placement(body, origin, 1 / cell), up, level / scale - dot(up, body.def.map->clusters.centre)};
+    body.account->charge(*body.elements, *body.footprint, water, now, scale / cell, weight, dt, half_step, scratch);
 }
 
 }  // namespace frm

@@ -43,18 +43,6 @@ HeightGrid heights_of(const SurfaceView& surface, const Under& under) {
     return {heights, field.stride(), field.def().nx, field.def().ny, field.level()};
 }
 
-/// Where the centre of the body's box lies over the water.
-GridPlacement placement(const Body& body, const SurfaceView& surface) {
-    const float m = surface.cells_per_metre * body.def.scale;
-    const Vec3f &r0 = body.rotation.row0, &r1 = body.rotation.row1, &c = body.def.map->clusters.centre;
-    return {surface.origin.i,
-            surface.origin.j,
-            surface.origin.x + m * dot(r0, c),
-            surface.origin.y + m * dot(r1, c),
-            {m * r0.x, m * r0.y, m * r0.z},
-            {m * r1.x, m * r1.y, m * r1.z}};
-}
-
 float support(const float along[3], const Vec3f& half) {
     return std::fabs(along[0]) * half.x + std::fabs(along[1]) * half.y + std::fabs(along[2]) * half.z;
 }
@@ -250,7 +238,7 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
     HeightGrid grid{};
     const float bed = surface.field ? -surface.field->def().depth : -infinite;
     if (surface.field) {
-        at = placement(body, surface);
+        at = placement(body, surface.origin, surface.cells_per_metre);
         const Under cells = under(body, surface, at);
         grid = heights_of(surface, cells);
         range = range_over(grid, cells, bed);

@@ -88,6 +88,34 @@ static void add_change_row(float* __restrict h, const float* __restrict now, con
     for (std::ptrdiff_t i = 0; i < count; ++i) h[i] += now[i] - before[i];
 }
 
+/// Sixteen lanes by a fixed tree.
+static float sum_of_lanes(float* lanes) {
+    for (std::ptrdiff_t width = kernel_lanes / 2; width > 0; width /= 2)
+        for (std::ptrdiff_t k = 0; k < width; ++k) lanes[k] += lanes[k + width];
+    return lanes[0];
+}
+
+/// h += half of the change from `before` to `now`, over a rectangle; the sum of those heights times the change.
+static float change_work(float* h, std::ptrdiff_t stride, const float* now, const float* before, std::ptrdiff_t columns,
+                         std::ptrdiff_t rows, std::ptrdiff_t count) {
+    constexpr std::ptrdiff_t lanes = kernel_lanes;
+    float sum[lanes] = {};
+    for (std::ptrdiff_t j = 0; j < rows; ++j, h += stride, now += columns, before += columns) {
+        const auto add = [&](std::ptrdiff_t i, std::ptrdiff_t k) {
+            const float change = now[i + k] - before[i + k], mean = h[i + k] + 0.5f * change;
+            h[i + k] = mean;
+            sum[k] += mean * change;
+        };
+        std::ptrdiff_t i = 0;
+        for (; i + lanes <= count; i += lanes) {
+            FRM_EACH_LANE
+            for (std::ptrdiff_t k = 0; k < lanes; ++k) add(i, k);
+        }
+        for (std::ptrdiff_t k = 0; i + k < count; ++k) add(i, k);
+    }
+    return sum_of_lanes(sum);
+}
+
 /// Sum of p times the divergence (u[i + 1] - u[i] + v[i + stride] - v[i]) over a rectangle: in sixteen lanes, then by a
 /// tree.
 static float pressed_divergence(const float* p, std::ptrdiff_t columns, const float* u, const float* v,
@@ -103,7 +131,5 @@ static float pressed_divergence(const float* p, std::ptrdiff_t columns, const fl
         for (std::ptrdiff_t k = 0; i + k < count; ++k)
             sum[k] += p[i + k] * ((u[i + k + 1] - u[i + k]) + (above[i + k] - v[i + k]));
     }
-    for (std::ptrdiff_t width = lanes / 2; width > 0; width /= 2)
-        for (std::ptrdiff_t k = 0; k < width; ++k) sum[k] += sum[k + width];
-    return sum[0];
+    return sum_of_lanes(sum);
 }

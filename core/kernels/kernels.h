@@ -78,6 +78,8 @@ struct Kernels {
     void (*refine)(float* fine, std::ptrdiff_t fine_stride, const float* coarse, std::ptrdiff_t stride,
                    std::ptrdiff_t rows, std::ptrdiff_t eights);
     void (*add_change_row)(float* h, const float* now, const float* before, std::ptrdiff_t count);
+    float (*change_work)(float* h, std::ptrdiff_t stride, const float* now, const float* before, std::ptrdiff_t columns,
+                         std::ptrdiff_t rows, std::ptrdiff_t count);
     float (*pressed_divergence)(const float* p, std::ptrdiff_t columns, const float* u, const float* v,
                                 std::ptrdiff_t stride, std::ptrdiff_t rows, std::ptrdiff_t count);
     /// Eq. 6 for sources `first` to first + 15, and their forces added to `total`. Where `skip_friction` is set, the

@@ -54,6 +54,7 @@ const Kernels kernels{
     slice_elements,
     refine,
     add_change_row,
+    change_work,
     pressed_divergence,
     look_up_block,
 };

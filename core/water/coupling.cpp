@@ -1,6 +1,7 @@
 #include "core/water/coupling.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/kernels/kernels.h"
 
@@ -102,19 +103,69 @@ Push push_on_water(const Footprint& footprint) {
     return {footprint.pressure(), n, n, footprint.pressed(), footprint.i0(), footprint.j0(), footprint.push};
 }
 
-float share_of_push(const Footprint& footprint, const Field& water, float dt, double work) {
+double energy_of_push(const Footprint& footprint, const Field& water, float dt) {
     const Rect r = inside_water(footprint, water, footprint.pressed());
-    if (r.empty()) return 1.0f;
+    if (r.empty()) return 0;
     const std::int32_t i0 = r.i0 + footprint.i0(), j0 = r.j0 + footprint.j0();
     const float sum = kernels().pressed_divergence(
         footprint.pressure() + at(r.i0, r.j0, footprint.size()), footprint.size(), water.velocity_x_row(j0) + i0,
         water.velocity_y_row(j0) + i0, water.stride(), r.j1 - r.j0, r.i1 - r.i0);
     // dE = rho d sum of u . dt grad p / rho over the faces = -d dt sum of p div u over the cells.
     const FieldDef& def = water.def();
-    const double taken =
-        -static_cast<double>(sum) * (static_cast<double>(def.depth * def.cell) * static_cast<double>(dt));
-    const double most = std::max(work, 0.0);
-    return taken > most ? static_cast<float>(most / taken) : 1.0f;
+    return -static_cast<double>(sum) * (static_cast<double>(def.depth * def.cell) * static_cast<double>(dt));
+}
+
+double work_of_change(const Footprint& footprint, const Field& water, const Rect& around, float half_step,
+                      float* heights) {
+    Rect changed = footprint.wet();
+    changed.include(footprint.wet_before());
+    const Rect r = inside_water(footprint, water, changed);
+    Rect where = around;
+    where.include(r.moved(footprint.i0(), footprint.j0()));
+    const FieldDef& def = water.def();
+    water.heights_ahead(where, -half_step * def.depth / def.cell, 0, heights);
+    if (r.empty()) return 0;
+    return static_cast<double>(
+        kernels().change_work(heights + (r.j0 + footprint.j0()) * water.stride() + (r.i0 + footprint.i0()),
+                              water.stride(), footprint.thickness().row(r.j0) + r.i0,
+                              footprint.thickness_before_row(r.j0) + r.i0, footprint.size(), r.j1 - r.j0, r.i1 - r.i0));
+}
+
+double take_energy(Footprint& footprint, Field& water, float pull, float density, double energy) {
+    Rect where = footprint.wet();
+    where.include(footprint.wet_before());
+    where.include(footprint.pressed());
+    const Rect r = inside_water(footprint, water, where);
+    // The leapfrog's kinetic energy is of the velocities half a step before and half a step after the heights, u and
+    // u - pull dh/dx; slowed to k u it is k^2 square - k cross.
+    const FieldDef& def = water.def();
+    const float slope = pull / def.cell;
+    double square = 0, cross = 0;
+    for (std::int32_t j = r.j0 + footprint.j0(); j < r.j1 + footprint.j0(); ++j) {
+        const float *h = water.height_row(j), *below = water.height_row(std::max(j - 1, 0));
+        const float *u = water.velocity_x_row(j), *v = water.velocity_y_row(j);
+        for (std::int32_t i = r.i0 + footprint.i0(); i < r.i1 + footprint.i0(); ++i) {
+            const float ahead = slope * (h[i] - h[std::max(i - 1, 0)]), up = slope * (h[i] - below[i]);
+            square += static_cast<double>(u[i] * u[i] + v[i] * v[i]);
+            cross += static_cast<double>(u[i] * ahead + v[i] * up);
+        }
+    }
+    if (!(square > 0)) return 0;
+    const double cell = static_cast<double>(def.cell);
+    const double each = 0.5 * static_cast<double>(density * def.depth) * cell * cell;
+    const double inside = cross * cross + 4 * square * (square - cross - energy / each);
+    const double keep = std::clamp((cross + std::sqrt(std::max(inside, 0.0))) / (2 * square), 0.0, 1.0);
+    const auto scale = kernels().scale;
+    for (std::int32_t j = r.j0; j < r.j1; ++j) {
+        const std::int32_t wi = r.i0 + footprint.i0(), wj = j + footprint.j0();
+        const std::ptrdiff_t count = r.i1 - r.i0;
+        const auto factor = static_cast<float>(keep);
+        scale(water.velocity_x_row(wj) + wi, count, factor);
+        scale(water.velocity_y_row(wj) + wi, count, factor);
+        scale(footprint.own.velocity_x_row(j) + r.i0, count, factor);
+        scale(footprint.own.velocity_y_row(j) + r.i0, count, factor);
+    }
+    return each * ((square - cross) - (keep * keep * square - keep * cross));
 }
 
 void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps) {

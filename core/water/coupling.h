@@ -18,10 +18,16 @@ void force_velocity(Footprint& footprint, Field& water, const Vec3f& linear, con
 
 /// The push by the pressure on the body's upper side (Eq. 10), for each step, as the footprint's `push` says.
 Push push_on_water(const Footprint& footprint);
-/// The share of that push which the water takes: all of it, but no more energy in a step of `dt` than `work`, J, that the
-/// body's drag does on the water in it. The push follows from the velocity that the water has, so that a body would else
-/// drive the waves it meets, one at rest too.
-float share_of_push(const Footprint& footprint, const Field& water, float dt, double work);
+/// The energy that the water has of all of that push in a step of `dt`, J; to first order.
+double energy_of_push(const Footprint& footprint, const Field& water, float dt);
+/// The work h dV of what a footprint's thickness changes by in this tick, before the water has it, in cells times m^2, with h
+/// the heights as the leapfrog's energy has them: `half_step` (s) before the field's, for its velocities are so old, and with
+/// half of the change itself. Leaves them in `heights`, as large as the field's, for the water's cells `around` too.
+double work_of_change(const Footprint& footprint, const Field& water, const Rect& around, float half_step,
+                      float* heights);
+/// Slows the water and the body's own waves, in the cells where it displaces or pushes, until they have `energy` (J) less or
+/// stand still. Returns how much less they have. `pull`: gravity times the step, `density` the water's.
+double take_energy(Footprint& footprint, Field& water, float pull, float density, double energy);
 /// The same push, and the steps, of the body's own waves.
 void advance_own(Footprint& footprint, float dt, float gravity, std::uint32_t steps);
 

@@ -1,4 +1,5 @@
-// Everything that decides a world's future, in a fixed order.
+// Everything that decides a world's future, in a fixed order, but for the accounts of energy (wave_account.h): they follow
+// from the rest, and while they lack nothing, nothing follows from them, so that recordings from before them replay.
 #include "core/world/world.h"
 
 namespace frm {

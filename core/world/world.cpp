@@ -13,6 +13,12 @@ namespace {
 /// (docs/model.md, section 7); a picture of the water must not stutter.
 constexpr float longest_wait = 0.25f, longest_wait_time = 5e-3f;
 
+/// Of the drag's work, what may go into waves: an account knows what a body pays to second order in the waves' height (the
+/// body is cut by them, what it displaces by the calm surface), which was up to a ninth of it (tests/stress).
+constexpr double covers = 0.8;
+/// s in which an overdrawn account is evened out: much of what a stroke spreads comes back with it.
+constexpr float overdraft_time = 0.02f;
+
 bool finite(const Forces& f) {
     const Vec3f sum = f.total.force + f.total.torque;  // of parts: one that is not finite shows
     return std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z);
@@ -46,7 +52,7 @@ Water& World::create_water(const WaterDef& def) {
         if (observer_) observer_->water_created(*this);
         water_->offer_snapshot(ticks_, time_);
     } catch (...) {
-        for (const auto& body : bodies_) body->elements.reset(), body->footprint.reset();
+        for (const auto& body : bodies_) take_footprint(*body);
         water_.reset();
         throw;
     }
@@ -54,7 +60,7 @@ Water& World::create_water(const WaterDef& def) {
 }
 
 void World::destroy_water() {
-    for (const auto& body : bodies_) body->elements.reset(), body->footprint.reset();
+    for (const auto& body : bodies_) take_footprint(*body);
     water_.reset();
     if (observer_) observer_->water_destroyed(*this);
 }
@@ -98,6 +104,13 @@ void World::give_footprint(Body& body) {
     const double volume = body.def.map->shape.volume * static_cast<double>(scale * scale * scale);
     body.footprint.emplace(water_->def().field, body.radius(), volume, memory_);
     body.elements.emplace(*body.def.map, cell / scale, body.footprint->levels(), memory_);
+    body.account.emplace(*body.elements, body.footprint->levels(), memory_);
+}
+
+void World::take_footprint(Body& body) {
+    body.account.reset();
+    body.elements.reset();
+    body.footprint.reset();
 }
 
 void World::destroy_body(Body& body) {
@@ -200,7 +213,7 @@ World::WaveTime World::time_waves(float dt) const {
 // A body's volume is in the water before any body feels the water, so that what a body feels of its own displacement is that
 // of its present pose. A tick late it would be a spring that pulls by where the body was, k (z - dt v) instead of k z: it
 // drives the body by k dt v. With it in time, a host's v += dt F / m, x += dt v is one symplectic step of body and water.
-void World::place_body(Body& body) {
+void World::place_body(Body& body, float dt, float half_step) {
     // What was dry without a wave of its own stays so: its forces are as they were, but for its weight.
     const bool settled =
         body.wetness == Wetness::dry && (!body.footprint || (!body.footprint->first && !body.footprint->active()));
@@ -221,7 +234,12 @@ void World::place_body(Body& body) {
     else
         lay_displacement(body, level, spread, (def_.skip & skip_still_bodies) != 0);
     body.footprint->keep_over_water(share_over_water(body, at));
-    if (spread) displace_water(*body.footprint, water_->field, behind_ * def_.fluid.gravity);
+    if (spread) {
+        if (!deep && !body.footprint->kept())
+            charge_displacement(body, water_->field, origin, level, def_.fluid.density * def_.fluid.gravity, dt,
+                                half_step, water_->scratch());
+        displace_water(*body.footprint, water_->field, behind_ * def_.fluid.gravity);
+    }
     skipped_.still_bodies += body.footprint->kept();
     skipped_.deep_bodies += deep;
 }
@@ -256,7 +274,8 @@ bool World::tick(float dt) {
 
     bool diverged = false;
     skipped_ = {0, 0, 0, 0, 0, skipped_.water_waits + waits};
-    for (const auto& body : bodies_) place_body(*body);
+    const float half_step = 0.5f * waves.time / static_cast<float>(std::max(1u, waves.steps)) - behind_;
+    for (const auto& body : bodies_) place_body(*body, dt, half_step);
     for (const auto& body : bodies_) {
         tick_body(*body, dt, time_each, waves.steps);
         if (!body->water_finite || !finite(body->forces)) {
@@ -282,12 +301,38 @@ bool World::tick(float dt) {
 
 void World::calm_water() {
     water_->field.calm();
-    for (const auto& body : bodies_) body->footprint->own.calm();
+    for (const auto& body : bodies_) {
+        body->footprint->own.calm();
+        body->account->credit = 0;
+    }
 }
 
 void World::move_water(const WaveTime& waves) {
     if (waves.steps > 0) step_waves(waves);
     for (const auto& body : bodies_) body->footprint->end();
+}
+
+// A push follows from the velocity that the water has, so that a body would else drive the waves it meets, one at rest too:
+// it gives no more energy than the body's drag does work in the step, nor than the body's account has. What the account lacks,
+// the water around the body gives back.
+float World::share_of_push(Body& body, const WaveTime& waves) {
+    const float step = waves.time / static_cast<float>(waves.steps);
+    const Forces& f = body.forces;
+    const Twist& twist = body.def.twist;
+    const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
+                        dot(f.pressure.torque + f.friction.torque, twist.angular);
+    const double work = static_cast<double>(power) * static_cast<double>(waves.time);
+    double& credit = body.account->credit;
+    credit += work > 0 ? covers * work : work;
+    const double all = waves.steps * energy_of_push(*body.footprint, water_->field, step);
+    const double most = std::max(std::min(work, credit), 0.0);
+    const double share = all > most ? most / all : 1.0;
+    credit -= share * all;
+    if (credit < 0) {
+        const double due = -credit * static_cast<double>(std::min(waves.time / overdraft_time, 1.0f));
+        credit += take_energy(*body.footprint, water_->field, step * def_.fluid.gravity, def_.fluid.density, due);
+    }
+    return static_cast<float>(share);
 }
 
 void World::step_waves(const WaveTime& waves) {
@@ -301,16 +346,9 @@ void World::step_waves(const WaveTime& waves) {
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
     for (const auto& body : bodies_) {
         body->footprint->gather_pressure(most);
+        // The paper's rule takes Eq. 10 as it is.
+        const float share = displaces ? share_of_push(*body, waves) : 1.0f;
         if (body->footprint->pressed().empty()) continue;
-        float share = 1;  // the paper's rule takes Eq. 10 as it is
-        if (displaces) {
-            const Forces& f = body->forces;
-            const Twist& twist = body->def.twist;
-            const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
-                                dot(f.pressure.torque + f.friction.torque, twist.angular);
-            share =
-                share_of_push(*body->footprint, field, step, static_cast<double>(power) * static_cast<double>(step));
-        }
         body->footprint->push = push * share;
         pushes_.push_back(push_on_water(*body->footprint));
     }

@@ -94,9 +94,11 @@ private:
     float share_over_water(const Body& body, const GridOrigin& centre) const;
     bool rests_around(const Body& body, const SurfaceView& view) const;
     bool cannot_be_wet(const Body& body) const;
-    void place_body(Body& body);
+    void place_body(Body& body, float dt, float half_step);
     void tick_body(Body& body, float dt, float time_budget, std::uint32_t steps);
     void give_footprint(Body& body);
+    static void take_footprint(Body& body);
+    float share_of_push(Body& body, const WaveTime& waves);
     void move_water(const WaveTime& waves);
     void step_waves(const WaveTime& waves);
     void calm_water();

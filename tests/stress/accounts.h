@@ -43,6 +43,10 @@ public:
         unspread_.elements.emplace(*body.def.map, water.def().field.cell, unspread_.footprint->levels(), memory());
     }
 
+    double energy_now(double step) {
+        read(h_, u_, v_);
+        return energy(h_, u_, v_, step);
+    }
     void before_tick() {
         read(h_, u_, v_);
         first_ = body_.footprint->first;

@@ -1,5 +1,6 @@
 // No energy comes from nothing: drag takes work over every closed motion, and waves never have more energy than the work
 // that was done on the water.
+#include "core/water/coupling.h"
 #include "tests/stress/accounts.h"
 #include "tests/stress/floating.h"
 #include "tests/stress/seed.h"
@@ -147,7 +148,10 @@ TEST_CASE("waves have no more energy than the work that was done on the water", 
         World world = world_of(def);
         Water& water = world.create_water(water_of(64, 0.05f, static_cast<float>(random.range(0.2, 3)),
                                                    random.once_in(3) ? Border::absorbing : Border::reflecting, 0));
-        const ClosedMotion motion(random, {0, 0, random.uniform(-0.03, 0.03)}, 0.01, random.range(0.01, 0.05));
+        const bool dives = random.once_in(2);
+        const double height = dives ? random.uniform(-0.3, 0.05) : random.uniform(-0.03, 0.03);
+        const ClosedMotion motion(random, {0, 0, height}, dives ? random.range(0.01, 0.15) : 0.01,
+                                  random.range(0.01, dives ? 0.4 : 0.05));
         Body& body = world.create_body(body_of(map, motion.pose(0).position, motion.pose(0).rotation));
         const double dt = random.range(0.001, 1.0 / 60);
         const Work work = go_round(world, body, motion, static_cast<std::uint32_t>(motion.period / dt));
@@ -162,12 +166,17 @@ TEST_CASE("waves have no more energy than the work that was done on the water", 
 
 TEST_CASE("waves have what a body displaces and no more than its drag beside", "[stress]") {
     // The body pays for what it displaces where it is, and the water gets it spread the wider the deeper it lies: by what
-    // the two differ, and by nothing else, a body under water may make waves of more energy than it was given.
+    // the two differ, and by nothing else, waves would have more energy than they were given. The body's account sees to
+    // that (core/body/wave_account.h): what drag does not cover, the water gives back.
     const auto map = map_of(fine_box({0.3, 0.3, 0.18}, 0.075), 18);
     Turns turns(60);
-    double off = 0, spread = 0, share = 0;
+    double off = 0, spread = 0, share = 0, kept = 0;
     int motions = 0;
-    for (std::uint64_t seed = stress_seed(); turns.more(); ++seed, ++motions) {
+    // Without the account these had up to 1.54 times the work; they were drawn at random like the rest.
+    constexpr std::uint64_t too_much[] = {20061595, 20061687, 5304, 5000};
+    for (; turns.more(); ++motions) {
+        const std::uint64_t seed =
+            motions < 4 ? too_much[motions] : stress_seed() + static_cast<std::uint64_t>(motions - 4);
         Random random(seed);
         WorldDef def;
         def.skip = skip_nothing;
@@ -190,18 +199,61 @@ TEST_CASE("waves have what a body displaces and no more than its drag beside", "
         // No step and no border makes energy, and no push more than the drag's work.
         REQUIRE(water_has.pushed <= -work.drag + rounding);
         REQUIRE(std::fabs(water_has.laid - water_has.below) <= water_has.apart + rounding);
+        REQUIRE(water_has.waves <= -work.total + rounding);
         // Unspread it would be what the body pays, but for what is of second order: the body is cut by the waves, and what
         // it displaces by the calm surface.
         if (!dives) {
-            REQUIRE(std::fabs(paid - water_has.below) <= 0.1 * paid + rounding);
+            REQUIRE(std::fabs(paid - water_has.below) <= 0.1 * std::fabs(paid) + 1e-4 * work.buoyancy + rounding);
             off = std::max(off, std::fabs(paid - water_has.below) / paid);
         }
         spread = std::max(spread, (water_has.laid - paid) / work.buoyancy);
         share = std::max(share, std::fabs(water_has.laid - water_has.below) / water_has.apart);
+        kept = std::max(kept, -water_has.waves / work.total);
     }
     std::printf(
         "stress: of %d motions buoyancy's work was off by at most %.4f of what is laid unspread; the spread gave at "
-        "most %.3f "
-        "of what flows to and fro, and %.2f of its bound\n",
-        motions, off, spread, share);
+        "most "
+        "%.3f of what flows to and fro, and %.2f of its bound; waves kept at most %.2f of the work\n",
+        motions, off, spread, share, kept);
+}
+
+TEST_CASE("what a body spreads beyond its means comes back to its account", "[stress]") {
+    const auto map = map_of(fine_box({0.3, 0.3, 0.18}, 0.075), 18);
+    World world = world_of({});
+    world.create_water(water_of(64, 0.05f, 0.5f, Border::reflecting, 0));
+    Body& body = world.create_body(body_of(map, {0, 0, -0.15}));
+    double least = 0;
+    for (int n = 0; n < 1000; ++n) {
+        // A host that says no velocity has no drag, which could cover anything.
+        world.set_motion(body, {{0, 0, -0.15 + 0.05 * std::sin(0.04 * std::min(n, 500))}, {}}, {});
+        REQUIRE(world.tick(0.004f));
+        least = std::min(least, body.account->credit);
+    }
+    CHECK(least < -0.1);
+    CHECK(body.account->credit > 0.05 * least);  // two seconds after the body stopped
+}
+
+TEST_CASE("water that gives energy back has as much less", "[stress]") {
+    const auto map = map_of(fine_box({0.3, 0.3, 0.18}, 0.075), 18);
+    World world = world_of({});
+    Water& water = world.create_water(water_of(64, 0.05f, 0.5f, Border::reflecting, 0));
+    Body& body = world.create_body(body_of(map, {0, 0, -0.05}));
+    const double dt = 0.004;
+    for (int n = 0; n < 200; ++n) {
+        world.set_motion(body, {{0.002 * n, 0, -0.05}, {}}, {{0.5f, 0, 0}, {}});
+        REQUIRE(world.tick(static_cast<float>(dt)));
+    }
+    const Fluid& fluid = world.def().fluid;
+    const auto energy = [&] { return Accounts(world, water, body).energy_now(dt); };
+    const double before = energy();
+    for (const double wanted : {0.01 * before, 0.02 * before, 10 * before}) {
+        const double had = energy(), taken = take_energy(*body.footprint, water.field,
+                                                         static_cast<float>(dt) * fluid.gravity, fluid.density, wanted);
+        INFO("wanted " << wanted << " of " << had << ", taken " << taken);
+        CHECK(had - energy() == Approx(taken).epsilon(0.02));
+        if (wanted < before)
+            CHECK(taken == Approx(wanted).epsilon(1e-3));
+        else
+            CHECK((taken > 0.02 * before && taken < had));  // heights stay, and what moves elsewhere
+    }
 }
