@@ -46,7 +46,6 @@ Preset preset(Quality quality) {
     }
 }
 
-constexpr double overlap_share = 0.25;      ///< of the period, faded into its beginning
 constexpr double most_record = 2.5;         ///< times as long as a period and the overlap
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
 constexpr double most_more = 1.5;           ///< directions added at most, as a share of the first ones

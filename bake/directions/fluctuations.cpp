@@ -49,7 +49,7 @@ struct Stretch {
 
 /// One period after another, as many as there are; of a record that is hardly longer than one, all of it.
 std::vector<Stretch> stretches_of(std::size_t samples, std::size_t period) {
-    const std::size_t length = period + period / 4;
+    const std::size_t length = period + static_cast<std::size_t>(overlap_share * static_cast<double>(period));
     if (samples < length + period) return {{0, samples}};
     std::vector<Stretch> out;
     for (std::size_t begin = 0; begin + length <= samples; begin += period) out.push_back({begin, length});

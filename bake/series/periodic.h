@@ -10,6 +10,9 @@
 
 namespace frm::bake {
 
+/// Of the period: how much of what lies beyond it is faded into its beginning.
+constexpr double overlap_share = 0.25;
+
 struct PeriodicSpec {
     std::uint32_t period = 0;     ///< samples of the input that make one period; even
     std::uint32_t samples = 0;    ///< of one period of the output; even

@@ -96,11 +96,12 @@ void lay_displacement(Body& body, float level, bool spread, bool keep_still) {
 
 void charge_displacement(Body& body, const Field& water, const GridOrigin& origin, float level, float weight, float dt,
                          float half_step, float* scratch) {
+    if (body.footprint->kept()) return body.account->stay();
     if (!body.footprint->changed()) return body.account->forget();
     const float cell = water.def().cell, scale = body.def.scale;
     const Vec3f& up = body.rotation.row2;
     const Immersion now{placement(body, origin, 1 / cell), up, level / scale - dot(up, body.def.map->clusters.centre)};
-    body.account->charge(*body.elements, *body.footprint, water, now, scale / cell, weight, dt, half_step, scratch);
+    body.account->charge(*body.footprint, water, now, scale / cell, weight, dt, half_step, scratch);
 }
 
 }  // namespace frm

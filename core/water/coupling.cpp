@@ -146,8 +146,9 @@ double take_energy(Footprint& footprint, Field& water, float pull, float density
         const float *u = water.velocity_x_row(j), *v = water.velocity_y_row(j);
         for (std::int32_t i = r.i0 + footprint.i0(); i < r.i1 + footprint.i0(); ++i) {
             const float ahead = slope * (h[i] - h[std::max(i - 1, 0)]), up = slope * (h[i] - below[i]);
-            square += static_cast<double>(u[i] * u[i] + v[i] * v[i]);
-            cross += static_cast<double>(u[i] * ahead + v[i] * up);
+            const auto x = static_cast<double>(u[i]), y = static_cast<double>(v[i]);
+            square += x * x + y * y;
+            cross += x * static_cast<double>(ahead) + y * static_cast<double>(up);
         }
     }
     if (!(square > 0)) return 0;
@@ -155,6 +156,7 @@ double take_energy(Footprint& footprint, Field& water, float pull, float density
     const double each = 0.5 * static_cast<double>(density * def.depth) * cell * cell;
     const double inside = cross * cross + 4 * square * (square - cross - energy / each);
     const double keep = std::clamp((cross + std::sqrt(std::max(inside, 0.0))) / (2 * square), 0.0, 1.0);
+    if (!(keep < 1)) return 0;
     const auto scale = kernels().scale;
     for (std::int32_t j = r.j0; j < r.j1; ++j) {
         const std::int32_t wi = r.i0 + footprint.i0(), wj = j + footprint.j0();

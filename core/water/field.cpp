@@ -190,7 +190,12 @@ void Field::set_heights(const float* height) {
     calm();
     wake({0, 0, def_.nx, def_.ny});
     const auto nx = static_cast<std::size_t>(def_.nx);
-    for (std::int32_t j = 0; j < def_.ny; ++j, height += nx) std::memcpy(height_row(j), height, nx * sizeof(float));
+    double sum = 0;
+    for (std::int32_t j = 0; j < def_.ny; ++j, height += nx) {
+        std::memcpy(height_row(j), height, nx * sizeof(float));
+        for (std::size_t i = 0; i < nx; ++i) sum += static_cast<double>(height[i]);
+    }
+    if (def_.border == Border::reflecting) mean_set_ = sum / static_cast<double>(cells());
 }
 
 void Field::start_from_rest(float dt, float gravity) {
@@ -206,7 +211,7 @@ void Field::start_from_rest(float dt, float gravity) {
 void Field::calm() {
     std::fill(memory_.begin(), memory_.end(), 0.0f);
     high_ = false;
-    level_ = 0;
+    level_ = mean_set_ = 0;
     tiles_.sleep_all();
 }
 

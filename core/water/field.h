@@ -65,6 +65,9 @@ public:
                  std::uint32_t threads);
     void step(float dt, float gravity, std::uint32_t threads) { advance(dt, gravity, 1, nullptr, 0, threads); }
 
+    /// Of the heights that were set last, in a closed basin, where it stays; else 0.
+    double mean_height_set() const { return mean_set_; }
+
     /// A push of the velocities, at once.
     void push(const Push& push);
 
@@ -146,7 +149,7 @@ private:
     float keeps_for_ = 0;  ///< the dt of keep_ times the waves' speed, m
     CalmTiles tiles_;
     std::size_t together_from_ = std::size_t{1} << 21;
-    double level_ = 0;
+    double level_ = 0, mean_set_ = 0;
     std::uint32_t steps_unseen_ = 0;
     bool high_ = false;
 };

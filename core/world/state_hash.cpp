@@ -1,5 +1,5 @@
-// Everything that decides a world's future, in a fixed order, but for the accounts of energy (wave_account.h): they follow
-// from the rest, and while they lack nothing, nothing follows from them, so that recordings from before them replay.
+// Everything that decides a world's future, in a fixed order. Of the accounts of energy (wave_account.h) what they lack: what
+// they hold limits a push at most, and without it recordings from before the accounts replay.
 #include "core/world/world.h"
 
 namespace frm {
@@ -38,6 +38,7 @@ void hash_body(StateHash& hash, const Body& body) {
     hash.value(body.laid_rotation.row1);
     hash.value(body.laid_rotation.row2);
     if (body.footprint) body.footprint->hash(hash);
+    if (body.account && body.account->credit < 0) hash.value(body.account->credit);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr float longest_wait = 0.25f, longest_wait_time = 5e-3f;
 /// Of the drag's work, what may go into waves: an account knows what a body pays to second order in the waves' height (the
 /// body is cut by them, what it displaces by the calm surface), which was up to a ninth of it (tests/stress).
 constexpr double covers = 0.8;
-/// s in which an overdrawn account is evened out: much of what a stroke spreads comes back with it.
+/// Time constant, s, by which an overdrawn account is evened out: much of what a stroke spreads comes back with it.
 constexpr float overdraft_time = 0.02f;
 
 bool finite(const Forces& f) {
@@ -33,6 +33,15 @@ void forget_forces(Body& body) {
     body.wetness = Wetness::unknown;
     body.streams.forget();
     body.map_time_owed = 0;
+}
+
+/// J that the body's drag does on the water in a tick.
+double work_of_drag(const Body& body, float dt) {
+    const Forces& f = body.forces;
+    const Twist& twist = body.def.twist;
+    const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
+                        dot(f.pressure.torque + f.friction.torque, twist.angular);
+    return static_cast<double>(power) * static_cast<double>(dt);
 }
 
 }  // namespace
@@ -67,7 +76,10 @@ void World::destroy_water() {
 
 void World::set_height(const float* height) {
     water_->set_height(height);
-    for (const auto& body : bodies_) body->footprint->own.calm();
+    for (const auto& body : bodies_) {
+        body->footprint->own.calm();
+        body->account->clear();
+    }
     behind_ = last_step_ = 0;
     stepped_at_ = ticks_;
     water_->offer_snapshot(ticks_, time_);
@@ -235,7 +247,7 @@ void World::place_body(Body& body, float dt, float half_step) {
         lay_displacement(body, level, spread, (def_.skip & skip_still_bodies) != 0);
     body.footprint->keep_over_water(share_over_water(body, at));
     if (spread) {
-        if (!deep && !body.footprint->kept())
+        if (!deep)
             charge_displacement(body, water_->field, origin, level, def_.fluid.density * def_.fluid.gravity, dt,
                                 half_step, water_->scratch());
         displace_water(*body.footprint, water_->field, behind_ * def_.fluid.gravity);
@@ -257,6 +269,7 @@ void World::tick_body(Body& body, float dt, float time_budget, std::uint32_t ste
     measure_wet_surface(body, view, def_.fluid, def_.skip);
     body.budget = {def_.error_budget, time_budget};
     look_up_resistance(body, view, def_.fluid, dt, def_.model, def_.skip);
+    if (body.account && def_.model & model_displacement) body.account->drag_work += work_of_drag(body, dt);
     skipped_.whole_bodies += body.by_one_evaluation;
     skipped_.coarse_bodies += body.detail.groups > 0;
     sum_forces(body, def_.fluid);
@@ -303,7 +316,7 @@ void World::calm_water() {
     water_->field.calm();
     for (const auto& body : bodies_) {
         body->footprint->own.calm();
-        body->account->credit = 0;
+        body->account->clear();
     }
 }
 
@@ -317,21 +330,20 @@ void World::move_water(const WaveTime& waves) {
 // the water around the body gives back.
 float World::share_of_push(Body& body, const WaveTime& waves) {
     const float step = waves.time / static_cast<float>(waves.steps);
-    const Forces& f = body.forces;
-    const Twist& twist = body.def.twist;
-    const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
-                        dot(f.pressure.torque + f.friction.torque, twist.angular);
-    const double work = static_cast<double>(power) * static_cast<double>(waves.time);
-    double& credit = body.account->credit;
-    credit += work > 0 ? covers * work : work;
-    const double all = waves.steps * energy_of_push(*body.footprint, water_->field, step);
-    const double most = std::max(std::min(work, credit), 0.0);
-    const double share = all > most ? most / all : 1.0;
-    credit -= share * all;
-    if (credit < 0) {
-        const double due = -credit * static_cast<double>(std::min(waves.time / overdraft_time, 1.0f));
-        credit += take_energy(*body.footprint, water_->field, step * def_.fluid.gravity, def_.fluid.density, due);
+    WaveAccount& account = *body.account;
+    const double work = account.drag_work;
+    account.drag_work = 0;
+    account.credit += covers * work;
+    if (!std::isfinite(account.credit) || (account.credit < 0 && !body.footprint->active())) account.credit = 0;
+    if (account.credit < 0) {
+        const double due = -account.credit * static_cast<double>(std::min(waves.time / overdraft_time, 1.0f));
+        account.credit +=
+            take_energy(*body.footprint, water_->field, step * def_.fluid.gravity, def_.fluid.density, due);
     }
+    const double all = waves.steps * energy_of_push(*body.footprint, water_->field, step);
+    const double most = std::max(std::min(work, account.credit), 0.0);
+    const double share = all > most ? most / all : 1.0;
+    account.credit -= share * all;
     return static_cast<float>(share);
 }
 
