@@ -14,17 +14,17 @@ TEST_CASE("a tick and a motion allocate nothing", "[allocation]") {
     const auto full = std::make_shared<Map>(test::full_map(test::fine_box({0.2, 0.1, 0.3}, 0.05)));
     Body& other = world.create_body(test::body_of(full, {0.5, 0.2, 0}, {}, {{0.1f, 0, 0}, {0, 1, 2}}));
     world.tick(0.002f);
-    const std::size_t before = allocations_here;
+    const std::size_t before = allocations_here();
     for (int t = 0; t < 200; ++t) {
         world.set_motion(body, {{0.004 * t, 0, 0.1 - 0.001 * t}, test::turned({1, 0, 0}, 0.01 * t)},
                          {{2, 0, -0.5f}, {5, 0, 0}});
         world.tick(0.002f);
     }
-    CHECK(allocations_here == before);
+    CHECK(allocations_here() == before);
     CHECK(body.wet_sources > 0);
     CHECK(other.wet_sources > 0);
     std::vector<int> seen(3);
-    CHECK(allocations_here > before);
+    CHECK(allocations_here() > before);
 }
 
 TEST_CASE("a tick, a motion and an exchange that are recorded allocate nothing", "[allocation]") {
@@ -42,7 +42,7 @@ TEST_CASE("a tick, a motion and an exchange that are recorded allocate nothing",
     REQUIRE(frm_device_open_null(lib.context, &device) == FRM_OK);
     REQUIRE(frm_recorder_create(world, folder.file("r.frmrec").c_str(), nullptr, &recorder) == FRM_OK);
     REQUIRE(frm_recorder_add_device(recorder, device) == FRM_OK);
-    const std::size_t before = allocations_here;
+    const std::size_t before = allocations_here();
     bool good = true;
     for (int t = 0; t < 500; ++t) {
         frm_device_state state{};
@@ -52,8 +52,8 @@ TEST_CASE("a tick, a motion and an exchange that are recorded allocate nothing",
         good &= frm_body_set_motion(body, &state.pose, nullptr) == FRM_OK;
         good &= frm_world_tick(world, 0.002f) == FRM_OK;
     }
-    CHECK(allocations_here == before);
+    CHECK(allocations_here() == before);
     CHECK(good);
     REQUIRE(frm_recorder_close(recorder) == FRM_OK);
-    CHECK(allocations_here > before);
+    CHECK(allocations_here() > before);
 }
