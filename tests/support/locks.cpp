@@ -4,9 +4,10 @@
 #include <pthread.h>
 
 std::atomic<std::size_t> frm::test::locks{0};
-thread_local std::size_t frm::test::locks_here = 0;
+static thread_local std::size_t here = 0;
+
+std::size_t frm::test::locks_here() { return here; }
 using frm::test::locks;
-using frm::test::locks_here;
 
 namespace {
 
@@ -19,16 +20,16 @@ Function* next_one(const char* name) {
 
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) {
     static auto* const real = next_one<int(pthread_mutex_t*)>("pthread_mutex_lock");
-    ++locks, ++locks_here;
+    ++locks, ++here;
     return real(mutex);
 }
 extern "C" int pthread_rwlock_rdlock(pthread_rwlock_t* lock) {
     static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
-    ++locks, ++locks_here;
+    ++locks, ++here;
     return real(lock);
 }
 extern "C" int pthread_rwlock_wrlock(pthread_rwlock_t* lock) {
     static auto* const real = next_one<int(pthread_rwlock_t*)>("pthread_rwlock_wrlock");
-    ++locks, ++locks_here;
+    ++locks, ++here;
     return real(lock);
 }

@@ -5,6 +5,8 @@
 #include <cstddef>
 
 namespace frm::test {
-extern std::atomic<std::size_t> locks;         ///< of all threads
-extern thread_local std::size_t locks_here;  ///< of this thread: a recorder's own may do so
-}
+extern std::atomic<std::size_t> locks;  ///< of all threads
+/// Of this thread: a recorder's own may do so. (A function, because gcc's sanitizer takes a thread's variable of another file
+/// for a null reference.)
+std::size_t locks_here();
+}  // namespace frm::test
