@@ -322,7 +322,12 @@ void World::calm_water() {
 
 void World::move_water(const WaveTime& waves) {
     if (waves.steps > 0) step_waves(waves);
-    for (const auto& body : bodies_) body->footprint->end();
+    for (const auto& body : bodies_) {
+        if (body->stays_dry) continue;  // nothing was begun
+        body->footprint->end();
+        // Whose own waves have gone has none left to give back.
+        if (!body->footprint->active()) body->account->credit = std::max(body->account->credit, 0.0);
+    }
 }
 
 // A push follows from the velocity that the water has, so that a body would else drive the waves it meets, one at rest too:
@@ -334,7 +339,7 @@ float World::share_of_push(Body& body, const WaveTime& waves) {
     const double work = account.drag_work;
     account.drag_work = 0;
     account.credit += covers * work;
-    if (!std::isfinite(account.credit) || (account.credit < 0 && !body.footprint->active())) account.credit = 0;
+    if (!std::isfinite(account.credit)) account.credit = 0;
     if (account.credit < 0) {
         const double due = -account.credit * static_cast<double>(std::min(waves.time / overdraft_time, 1.0f));
         account.credit +=
@@ -357,6 +362,7 @@ void World::step_waves(const WaveTime& waves) {
     const Rect all{0, 0, field.def().nx, field.def().ny};
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
     for (const auto& body : bodies_) {
+        if (body->stays_dry) continue;
         body->footprint->gather_pressure(most);
         // The paper's rule takes Eq. 10 as it is.
         const float share = displaces ? share_of_push(*body, waves) : 1.0f;
