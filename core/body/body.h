@@ -141,6 +141,15 @@ void lay_displacement(Body& body, float level, bool spread, bool keep_still = tr
 void charge_displacement(Body& body, const Field& water, const GridOrigin& origin, float level, float weight, float dt,
                          float half_step, float* scratch);
 
+/// J that the body's drag does on the water in a tick, by its last forces.
+double work_of_drag(const Body& body, float dt);
+
+/// Of a body's push, in `steps` wave steps of `time` in all, the share that the water takes. A push follows from the velocity
+/// that the water has, so that a body would else drive the waves it meets, one at rest too: it gives no more energy than the
+/// body's drag did work since the last step, nor than the body's account has. What the account lacks, the water around the body
+/// gives back.
+float share_of_push(Body& body, Field& water, const Fluid& fluid, float time, std::uint32_t steps);
+
 /// Instead: all of the body's volume counts as even over all of the water (FRM_SKIP_DEEP_BODIES).
 void leave_displacement(Body& body);
 

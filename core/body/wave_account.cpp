@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/body/body.h"
 #include "core/kernels/kernels.h"
 #include "core/water/coupling.h"
 
@@ -17,6 +18,12 @@ constexpr float time_for_one = 8e-3f;
 constexpr std::uint32_t ticks_for_one = 4;  ///< at most
 /// Of an element's four points, which have its second moments: a height of second degree has its mean at them.
 constexpr float sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+
+/// Of the drag's work, what may go into waves: an account knows what a body pays to second order in the waves' height (the
+/// body is cut by them, what it displaces by the calm surface), which was up to a ninth of it (tests/stress).
+constexpr double covers = 0.8;
+/// Time constant, s, by which an overdrawn account is evened out: much of what a stroke spreads comes back with it.
+constexpr float overdraft_time = 0.02f;
 
 using Elements = std::pmr::vector<OnLines<ElementBlock>>;
 
@@ -140,6 +147,32 @@ void WaveAccount::charge(const Footprint& footprint, const Field& water, const I
     credit -= surplus_;
     before_ = now;
     known_ = true;
+}
+
+double work_of_drag(const Body& body, float dt) {
+    const Forces& f = body.forces;
+    const Twist& twist = body.def.twist;
+    const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
+                        dot(f.pressure.torque + f.friction.torque, twist.angular);
+    return static_cast<double>(power) * static_cast<double>(dt);
+}
+
+float share_of_push(Body& body, Field& water, const Fluid& fluid, float time, std::uint32_t steps) {
+    const float step = time / static_cast<float>(steps);
+    WaveAccount& account = *body.account;
+    const double work = account.drag_work;
+    account.drag_work = 0;
+    account.credit += covers * work;
+    if (!std::isfinite(account.credit)) account.credit = 0;
+    if (account.credit < 0) {
+        const double due = -account.credit * static_cast<double>(std::min(time / overdraft_time, 1.0f));
+        account.credit += take_energy(*body.footprint, water, step * fluid.gravity, fluid.density, due);
+    }
+    const double all = steps * energy_of_push(*body.footprint, water, step);
+    const double most = std::max(std::min(work, account.credit), 0.0);
+    const double share = all > most ? most / all : 1.0;
+    account.credit -= share * all;
+    return static_cast<float>(share);
 }
 
 }  // namespace frm

@@ -27,7 +27,7 @@ public:
     WaveAccount(const VolumeElements& elements, int levels, std::pmr::memory_resource* memory);
 
     /// J: a share of the work of the body's drag, less what its pushes and the spread of its displacement gave the waves. What
-    /// it lacks, the water around the body gives back (World::share_of_push).
+    /// it lacks, the water around the body gives back (share_of_push).
     double credit = 0;
     /// J that drag has done since the water was last stepped.
     double drag_work = 0;

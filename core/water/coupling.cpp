@@ -15,6 +15,13 @@ Rect inside_water(const Footprint& footprint, const Field& water, const Rect& r)
         .moved(-footprint.i0(), -footprint.j0());
 }
 
+/// Of a window: where its thickness is or was in the tick before.
+Rect changed_cells(const Footprint& footprint) {
+    Rect changed = footprint.wet();
+    changed.include(footprint.wet_before());
+    return changed;
+}
+
 std::size_t at(std::int32_t i, std::int32_t j, std::int32_t nx) {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i);
 }
@@ -25,8 +32,7 @@ void displace_water(Footprint& footprint, Field& water, float late) {
     if (footprint.first) return;
     if (!footprint.changed()) return;
     water.raise(footprint.rest_change());
-    Rect changed = footprint.wet();
-    changed.include(footprint.wet_before());
+    const Rect changed = changed_cells(footprint);
     const auto add = kernels().add_change_row;
     const auto raise = [&](Field& field, const Rect& r, std::int32_t di, std::int32_t dj) {
         field.wake(r.moved(di, dj));
@@ -117,9 +123,7 @@ double energy_of_push(const Footprint& footprint, const Field& water, float dt) 
 
 double work_of_change(const Footprint& footprint, const Field& water, const Rect& around, float half_step,
                       float* heights) {
-    Rect changed = footprint.wet();
-    changed.include(footprint.wet_before());
-    const Rect r = inside_water(footprint, water, changed);
+    const Rect r = inside_water(footprint, water, changed_cells(footprint));
     Rect where = around;
     where.include(r.moved(footprint.i0(), footprint.j0()));
     const FieldDef& def = water.def();
@@ -132,8 +136,7 @@ double work_of_change(const Footprint& footprint, const Field& water, const Rect
 }
 
 double take_energy(Footprint& footprint, Field& water, float pull, float density, double energy) {
-    Rect where = footprint.wet();
-    where.include(footprint.wet_before());
+    Rect where = changed_cells(footprint);
     where.include(footprint.pressed());
     const Rect r = inside_water(footprint, water, where);
     // The leapfrog's kinetic energy is of the velocities half a step before and half a step after the heights, u and

@@ -13,12 +13,6 @@ namespace {
 /// (docs/model.md, section 7); a picture of the water must not stutter.
 constexpr float longest_wait = 0.25f, longest_wait_time = 5e-3f;
 
-/// Of the drag's work, what may go into waves: an account knows what a body pays to second order in the waves' height (the
-/// body is cut by them, what it displaces by the calm surface), which was up to a ninth of it (tests/stress).
-constexpr double covers = 0.8;
-/// Time constant, s, by which an overdrawn account is evened out: much of what a stroke spreads comes back with it.
-constexpr float overdraft_time = 0.02f;
-
 bool finite(const Forces& f) {
     const Vec3f sum = f.total.force + f.total.torque;  // of parts: one that is not finite shows
     return std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z);
@@ -33,15 +27,6 @@ void forget_forces(Body& body) {
     body.wetness = Wetness::unknown;
     body.streams.forget();
     body.map_time_owed = 0;
-}
-
-/// J that the body's drag does on the water in a tick.
-double work_of_drag(const Body& body, float dt) {
-    const Forces& f = body.forces;
-    const Twist& twist = body.def.twist;
-    const float power = -dot(f.pressure.force + f.friction.force, twist.linear) -
-                        dot(f.pressure.torque + f.friction.torque, twist.angular);
-    return static_cast<double>(power) * static_cast<double>(dt);
 }
 
 }  // namespace
@@ -330,28 +315,6 @@ void World::move_water(const WaveTime& waves) {
     }
 }
 
-// A push follows from the velocity that the water has, so that a body would else drive the waves it meets, one at rest too:
-// it gives no more energy than the body's drag does work in the step, nor than the body's account has. What the account lacks,
-// the water around the body gives back.
-float World::share_of_push(Body& body, const WaveTime& waves) {
-    const float step = waves.time / static_cast<float>(waves.steps);
-    WaveAccount& account = *body.account;
-    const double work = account.drag_work;
-    account.drag_work = 0;
-    account.credit += covers * work;
-    if (!std::isfinite(account.credit)) account.credit = 0;
-    if (account.credit < 0) {
-        const double due = -account.credit * static_cast<double>(std::min(waves.time / overdraft_time, 1.0f));
-        account.credit +=
-            take_energy(*body.footprint, water_->field, step * def_.fluid.gravity, def_.fluid.density, due);
-    }
-    const double all = waves.steps * energy_of_push(*body.footprint, water_->field, step);
-    const double most = std::max(std::min(work, account.credit), 0.0);
-    const double share = all > most ? most / all : 1.0;
-    account.credit -= share * all;
-    return static_cast<float>(share);
-}
-
 void World::step_waves(const WaveTime& waves) {
     Field& field = water_->field;
     const bool displaces = (def_.model & model_displacement) != 0, own_waves = (def_.model & model_own_waves) != 0;
@@ -365,7 +328,7 @@ void World::step_waves(const WaveTime& waves) {
         if (body->stays_dry) continue;
         body->footprint->gather_pressure(most);
         // The paper's rule takes Eq. 10 as it is.
-        const float share = displaces ? share_of_push(*body, waves) : 1.0f;
+        const float share = displaces ? share_of_push(*body, field, def_.fluid, waves.time, waves.steps) : 1.0f;
         if (body->footprint->pressed().empty()) continue;
         body->footprint->push = push * share;
         pushes_.push_back(push_on_water(*body->footprint));

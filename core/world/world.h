@@ -98,7 +98,6 @@ private:
     void tick_body(Body& body, float dt, float time_budget, std::uint32_t steps);
     void give_footprint(Body& body);
     static void take_footprint(Body& body);
-    float share_of_push(Body& body, const WaveTime& waves);
     void move_water(const WaveTime& waves);
     void step_waves(const WaveTime& waves);
     void calm_water();
