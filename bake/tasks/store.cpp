@@ -40,7 +40,7 @@ Store::Store(std::string folder, const BakePlan& plan, Note note)
             make_folders(folder_);
             locks_ = std::make_unique<LockFile>(folder_ + "/locks");
         } catch (const FileError&) {
-            if (tries == 100 || fs::is_directory(folder_)) throw;
+            if (tries == 100) throw;  // a folder that is there now may not have been a moment ago
         }
     }
     if (!locks_->work())
