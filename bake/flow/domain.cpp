@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bake/flow/blocks.h"
+#include "bake/flow/refinement.h"
 #include "bake/mesh/roundness.h"
 #include "bake/mesh/thickness.h"
 
@@ -407,6 +408,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
         const double expected = 2.0 * direction_count * sizeof(float) * grid.nx * (grid.ny + 2.0) * (grid.nz + 2.0);
         if (expected > static_cast<double>(c.memory_limit)) refuse_memory(expected, c.memory_limit);
         bytes += 2 * Populations::bytes(grid);
+        if (l + 1 < d.blocks.size()) bytes += Refinement::bytes(grid);
     }
     const FlowBlock& box = plan.blocks.back();
     const double cross_section = (box.high.y - box.low.y) * (c.section ? c.section_span : box.high.z - box.low.z);
@@ -439,7 +441,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     }
     plan.steps = d.start_steps - d.first_step + std::uint64_t{d.interval_steps} * d.samples + 1;
     plan.updates = static_cast<double>(finest_steps_of_cells) * static_cast<double>(plan.steps);
-    // Two copies of the populations, a flag a finest cell, and some two hundred bytes for each cell of the body's
+    // Two copies of the populations, what is kept at borders, a flag a finest cell, and some two hundred bytes for each cell of the body's
     // surface.
     const double wetted =
         c.section ? 4 * (size.x + size.y) / plan.cell * d.finest().nz : measure(surface).area / (plan.cell * plan.cell);

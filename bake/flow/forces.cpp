@@ -4,14 +4,34 @@
 #include <cmath>
 #include <utility>
 
+#include "bake/flow/vectors.h"
+
 namespace frm::bake::flow {
 namespace {
 
 constexpr std::size_t stretch_length = 256;
+constexpr std::size_t ahead = 24;  // links whose populations are on their way from memory
 
 double along_normal(const Link& link, const Direction& c) {
     return c.x * static_cast<double>(link.normal[0]) + c.y * static_cast<double>(link.normal[1]) +
            c.z * static_cast<double>(link.normal[2]);
+}
+
+/// In lanes of a fixed number, whatever the processor has.
+FRM_FLOW_CLONES
+double sum_of_products(const float* a, const float* b, std::size_t count) {
+    constexpr std::size_t lanes = 8;
+    double sums[lanes] = {};
+    std::size_t n = 0;
+    for (; n + lanes <= count; n += lanes) {
+        for (std::size_t l = 0; l < lanes; ++l) {
+            sums[l] += static_cast<double>(a[n + l]) * static_cast<double>(b[n + l]);
+        }
+    }
+    for (std::size_t l = 0; n + l < count; ++l) {
+        sums[l] += static_cast<double>(a[n + l]) * static_cast<double>(b[n + l]);
+    }
+    return ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
 }
 
 }  // namespace
@@ -63,28 +83,21 @@ void Wall::gather(const Populations& from, float motion, std::size_t stretch) {
     for (std::size_t n = s.first; n < s.last; ++n) {
         const Places& at = places_[n];
         const Weights& w = weights_[n];
+        if (n + ahead < places_.size()) {
+            const Places& next = places_[n + ahead];
+            ask_for(f + next.out);
+            ask_for(f + next.in);
+            ask_for(f + next.far);
+        }
         const float out = f[at.out];
         back_[n] = w.out * out + w.in * f[at.in] + w.far * f[at.far] + motion * w.wall;
         exchange_[n] = out + back_[n];
     }
-    // Sums in lanes of a fixed number, whatever the processor has.
-    constexpr std::size_t lanes = 8;
     double* const results[parts] = {&s.load.force[0],    &s.load.force[1],    &s.load.force[2],
                                     &s.load.pressure[0], &s.load.pressure[1], &s.load.pressure[2],
                                     &s.load.torque[0],   &s.load.torque[1],   &s.load.torque[2]};
     for (std::size_t p = 0; p < parts; ++p) {
-        const float* const share = share_[p].data();
-        double sums[lanes] = {};
-        std::size_t n = s.first;
-        for (; n + lanes <= s.last; n += lanes) {
-            for (std::size_t l = 0; l < lanes; ++l) {
-                sums[l] += static_cast<double>(exchange_[n + l]) * static_cast<double>(share[n + l]);
-            }
-        }
-        for (std::size_t l = 0; n + l < s.last; ++l) {
-            sums[l] += static_cast<double>(exchange_[n + l]) * static_cast<double>(share[n + l]);
-        }
-        *results[p] = ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
+        *results[p] = sum_of_products(exchange_.data() + s.first, share_[p].data() + s.first, s.last - s.first);
     }
 }
 

@@ -16,18 +16,35 @@ struct Collision {
     float push[3] = {};                 ///< velocity gained by the fluid in this step (the start-up's acceleration)
 };
 
-/// Row r of `to` from the neighbours in `from`. The row's ghosts are left with no meaning.
-void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision);
-
-/// The same in the turning frame; there is no push then.
-void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision,
-                 const Turning& turning);
-
 /// What blocks exchange of a cell: density less one, velocity, and stress over relaxation time (xx, yy, zz, xy, xz,
 /// yz), which is the rate of strain but for constants: smooth across a change of cell size, where populations are not.
 constexpr int field_count = 10;
 using Fields = std::array<float*, field_count>;
 using ConstFields = std::array<const float*, field_count>;
+
+/// Cells of a row whose fields, as they are before the collision, are kept on the way.
+struct Wanted {
+    struct Cells {
+        std::size_t begin, end;
+        Fields to;  ///< of cell `begin`
+    };
+    static constexpr std::size_t most = 12;
+
+    std::array<Cells, most> cells;
+    std::size_t count = 0;
+
+    void add(int first, int size, const Fields& to) {
+        cells[count++] = {static_cast<std::size_t>(first), static_cast<std::size_t>(first + size), to};
+    }
+};
+
+/// Row r of `to` from the neighbours in `from`. The row's ghosts are left with no meaning.
+void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision,
+                 const Wanted& wanted);
+
+/// The same in the turning frame; there is no push then.
+void collide_row(const Grid& grid, const Populations& from, Populations& to, std::size_t r, const Collision& collision,
+                 const Wanted& wanted, const Turning& turning);
 
 /// Fields of `count` cells from (i, j, k) on along x, of the step that pulls from `from`. `relaxation` is one time.
 void observe(const Grid& grid, const Populations& from, int i, int j, int k, std::size_t count, float relaxation,

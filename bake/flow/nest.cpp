@@ -128,25 +128,15 @@ void Nest::advance(const std::function<void(std::uint64_t)>& after_step) {
 void Nest::advance_level(std::size_t l) {
     Level& level = levels_[l];
     const bool outermost = l + 1 == levels_.size();
-    if (l == 0) {
-        walls();
-    } else {
-#pragma omp single nowait
-        refinements_[l - 1].turn();
-    }
+    if (l == 0) walls();
     bulk(l);
 
     const Turning turns = turning(l, level.step);
     const auto fills = static_cast<std::ptrdiff_t>(outermost ? 0 : refinements_[l].fill_tasks());
-    const auto reads = static_cast<std::ptrdiff_t>(l == 0 ? 0 : refinements_[l - 1].observe_tasks());
 #pragma omp for schedule(static)
-    for (std::ptrdiff_t n = 0; n < fills + reads; ++n) {
-        if (n < fills) {
-            refinements_[l].fill(*level.to, level.second ? 1.0f : 0.5f, level.collision.push, turns,
-                                 static_cast<std::size_t>(n));
-        } else {
-            refinements_[l - 1].observe(*level.from, turns, static_cast<std::size_t>(n - fills));
-        }
+    for (std::ptrdiff_t n = 0; n < fills; ++n) {
+        refinements_[l].fill(*level.to, level.second ? 1.0f : 0.5f, level.collision.push, turns,
+                             static_cast<std::size_t>(n));
     }
 #pragma omp single
     {
@@ -167,17 +157,17 @@ void Nest::advance_level(std::size_t l) {
     Refinement& border = refinements_[l - 1];
     const auto filters = static_cast<std::ptrdiff_t>(border.filter_tasks());
     const auto writes = static_cast<std::ptrdiff_t>(border.restrict_tasks());
-    const Turning fine_turns = turning_before(l - 1);
 #pragma omp for schedule(static)
-    for (std::ptrdiff_t n = 0; n < filters; ++n) {
-        border.filter(*levels_[l - 1].to, fine_turns, static_cast<std::size_t>(n));
-    }
+    for (std::ptrdiff_t n = 0; n < filters; ++n) border.filter(static_cast<std::size_t>(n));
 #pragma omp for schedule(static)
     for (std::ptrdiff_t n = 0; n < writes; ++n) {
         border.restrict_to(*level.from, level.collision.push, turns, static_cast<std::size_t>(n));
     }
 #pragma omp single
-    set_push(level, std::uint64_t{1} << l);
+    {
+        border.turn();
+        set_push(level, std::uint64_t{1} << l);
+    }
 }
 
 void Nest::walls() {
@@ -193,29 +183,34 @@ void Nest::walls() {
 void Nest::bulk(std::size_t l) {
     Level& level = levels_[l];
     const Grid& grid = level.grid;
-    const bool outermost = l + 1 == levels_.size();
-    if (domain_.turning) {
-        const Turning turns = turning(l, level.step);
-        level.shares->each([&](std::size_t r) {
-            Collision collision = level.collision;
-            if (outermost) collision.relaxation += r * grid.pitch();
-            collide_row(grid, *level.from, *level.to, r, collision, turns);
-            if (l == 0) empty_solid(r);
-            if (outermost) close_row_still(grid, *level.to, r, turns, reach_);
-        });
-#pragma omp barrier
-        return;
-    }
+    const bool outermost = l + 1 == levels_.size(), turns_frame = domain_.turning;
+    const Turning turns = turning(l, level.step);
     const auto far = stream_populations(stream(level.step + (std::uint64_t{1} << l)));
     level.shares->each([&](std::size_t r) {
         Collision collision = level.collision;
-        if (level.ripple != 0) {
-            const double place = 2 * pi * grid.row_z(r) / grid.nz;
-            collision.push[1] += level.ripple * static_cast<float>(std::cos(place) + std::cos(2 * place + 1));
+        Wanted wanted;
+        if (l > 0) refinements_[l - 1].want_coarse(r, wanted);
+        const bool ends_pair = !outermost && level.second;
+        if (ends_pair) refinements_[l].want_fine(r, wanted);
+        if (turns_frame) {
+            if (outermost) collision.relaxation += r * grid.pitch();
+            collide_row(grid, *level.from, *level.to, r, collision, wanted, turns);
+        } else {
+            if (level.ripple != 0) {
+                const double place = 2 * pi * grid.row_z(r) / grid.nz;
+                collision.push[1] += level.ripple * static_cast<float>(std::cos(place) + std::cos(2 * place + 1));
+            }
+            collide_row(grid, *level.from, *level.to, r, collision, wanted);
         }
-        collide_row(grid, *level.from, *level.to, r, collision);
+        if (l > 0) refinements_[l - 1].keep_coarse(r, turns);
+        if (ends_pair) refinements_[l].keep_fine(r, turns);
         if (l == 0) empty_solid(r);
-        if (outermost) close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
+        if (!outermost) return;
+        if (turns_frame) {
+            close_row_still(grid, *level.to, r, turns, reach_);
+        } else {
+            close_row(grid, *level.to, r, far, domain_.stream_speed > 0);
+        }
     });
 #pragma omp barrier
 }
@@ -354,9 +349,21 @@ void Nest::set(const Source& source) {
             }
         }
     }
-    for (std::size_t l = 0; l < refinements_.size(); ++l) {
-        for (std::size_t n = 0; n < refinements_[l].observe_tasks(); ++n)
-            refinements_[l].observe(*levels_[l + 1].to, turning_before(l + 1), n);
+    for (std::size_t l = 1; l < levels_.size(); ++l) {
+        const Level& level = levels_[l];
+        const Turning turns = turning_before(l);
+        for (std::size_t r = 0; r < level.grid.rows(); ++r) {
+            Wanted wanted;
+            refinements_[l - 1].want_coarse(r, wanted);
+            for (std::size_t n = 0; n < wanted.count; ++n) {
+                const Wanted::Cells& cells = wanted.cells[n];
+                flow::observe(level.grid, *level.to, static_cast<int>(cells.begin), level.grid.row_y(r),
+                              level.grid.row_z(r), cells.end - cells.begin,
+                              static_cast<float>(domain_.relaxation(static_cast<int>(l))), smagorinsky, cells.to);
+            }
+            refinements_[l - 1].keep_coarse(r, turns);
+        }
+        refinements_[l - 1].turn();
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bake/flow/vectors.h"
+
 namespace frm::bake::flow {
 namespace {
 
@@ -19,9 +21,66 @@ constexpr float inner_weight = 9.0f / 16, outer_weight = -1.0f / 16;
 /// high. These weights take out the zigzag and leave the rest to fourth order (1 2 1 would blur the flow: a vortex that
 /// crossed two borders lost three times as much).
 float filtered(float a, float b, float c, float d, float e) { return 0.625f * c + 0.25f * (b + d) - 0.0625f * (a + e); }
-constexpr int reach = 2;  // nodes to each side
+constexpr int reach = 2, planes = 2 * reach + 1;  // nodes to each side, and in all
 
 float half_way(float a, float b, float c, float d) { return inner_weight * (b + c) + outer_weight * (a + d); }
+
+/// Of a row, the cells beside the ring of a face across rows, a thread's own.
+float* edge(bool high) {
+    thread_local float cells[2][field_count * planes];
+    return cells[high ? 1 : 0];
+}
+
+// Rows of the borders' planes, in time, across and along them.
+
+FRM_FLOW_CLONES
+void rows_at_time(const float* a0, const float* a1, float share, std::size_t count, float* to) {
+    const float old_share = 1 - share;
+    FRM_FLOW_INDEPENDENT
+    for (std::size_t u = 0; u < count; ++u) to[u] = old_share * a0[u] + share * a1[u];
+}
+
+/// Half-way between the middle two of four rows.
+FRM_FLOW_CLONES
+void half_way_rows(const float* const* old_rows, const float* const* new_rows, float share, std::size_t count,
+                   float* to) {
+    const float *const a0 = old_rows[0], *const b0 = old_rows[1], *const c0 = old_rows[2], *const d0 = old_rows[3];
+    const float *const a1 = new_rows[0], *const b1 = new_rows[1], *const c1 = new_rows[2], *const d1 = new_rows[3];
+    const float old_share = 1 - share;
+    FRM_FLOW_INDEPENDENT
+    for (std::size_t u = 0; u < count; ++u) {
+        to[u] = old_share * half_way(a0[u], b0[u], c0[u], d0[u]) + share * half_way(a1[u], b1[u], c1[u], d1[u]);
+    }
+}
+
+/// Every second node of `to` is one of the row's, from its second on.
+FRM_FLOW_CLONES
+void refine_row(const float* row, std::size_t count, float* to) {
+    const std::size_t pairs = count / 2;
+    FRM_FLOW_INDEPENDENT
+    for (std::size_t u = 0; u < pairs; ++u) {
+        to[2 * u] = row[u + 1];
+        to[2 * u + 1] = half_way(row[u], row[u + 1], row[u + 2], row[u + 3]);
+    }
+    to[2 * pairs] = row[pairs + 1];
+}
+
+FRM_FLOW_CLONES
+void filter_rows(const float* const* rows, std::size_t count, float* to) {
+    const float *const a = rows[0], *const b = rows[1], *const c = rows[2], *const d = rows[3], *const e = rows[4];
+    FRM_FLOW_INDEPENDENT
+    for (std::size_t u = 0; u < count; ++u) to[u] = filtered(a[u], b[u], c[u], d[u], e[u]);
+}
+
+/// Every second node from the row's fourth on.
+FRM_FLOW_CLONES
+void coarsen_row(const float* row, std::size_t count, float* to) {
+    FRM_FLOW_INDEPENDENT
+    for (std::size_t u = 0; u < count; ++u) {
+        const float* const c = row + 1 + 2 * u;
+        to[u] = filtered(c[0], c[1], c[2], c[3], c[4]);
+    }
+}
 
 }  // namespace
 
@@ -60,12 +119,18 @@ Refinement::Refinement(const Block& fine, const Block& coarse, float fine_relaxa
     }
     for (std::size_t f = 0; f < faces_.size(); ++f) {
         const Face& face = faces_[f];
-        for (int v = 0; v < face.nv; ++v) observe_tasks_.push_back({f, v});
         for (int v = 0; v < face.fine_nv; ++v) fill_tasks_.push_back({f, v});
         for (int v = 0; v < face.between_rows(); ++v) filter_tasks_.push_back({f, v});
         const int border = face.wraps ? 0 : 3;
         for (int v = border; v < face.nv - border; ++v) restrict_tasks_.push_back({f, v});
     }
+}
+
+std::uint64_t Refinement::bytes(const Grid& fine) {
+    const auto x = static_cast<std::uint64_t>(fine.nx), y = static_cast<std::uint64_t>(fine.ny),
+               z = static_cast<std::uint64_t>(fine.nz);
+    const std::uint64_t across = 2 * y * z, along = 2 * x * (z + (fine.periodic ? 0 : y));
+    return (2 * across + (planes + 1) * along) * field_count * sizeof(float);
 }
 
 void Refinement::add_face(const Block& fine, const Block& coarse, int axis, bool high) {
@@ -106,24 +171,84 @@ void Refinement::add_face(const Block& fine, const Block& coarse, int axis, bool
     face.between.assign(static_cast<std::size_t>(field_count) * static_cast<std::size_t>(face.between_rows()) *
                             static_cast<std::size_t>(face.between_count()),
                         0);
+    face.kept.assign(
+        (axis == 0 ? 1 : planes) * field_count * static_cast<std::size_t>(face.between_rows()) * face.kept_count(), 0);
     faces_.push_back(std::move(face));
 }
 
-void Refinement::observe(const Populations& coarse, const Turning& turning, std::size_t task) {
-    Face& face = faces_[observe_tasks_[task].face];
-    const int v = observe_tasks_[task].v;
-    // Rows run along x but for the planes across it.
-    const int rows = face.axis == 0 ? face.nu : 1;
-    const auto count = static_cast<std::size_t>(face.axis == 0 ? 1 : face.nu);
-    for (int u = 0; u < rows; ++u) {
-        Fields fields{};
-        for (int f = 0; f < field_count; ++f) fields[static_cast<std::size_t>(f)] = face.row(newest_, f, v) + u;
-        const auto p = face.at(face.coarse, face.u_first + u, face.v_first + v);
-        flow::observe(coarse_, coarse, p[0], p[1], p[2], count, coarse_relaxation_, smagorinsky_, fields);
+bool Refinement::Face::holds(int j, int k) const {
+    const int plane = (axis == 1 ? j : k) - coarse, along = (axis == 2 ? j : k) - v_first;
+    if (along < 0 || along >= nv) return false;
+    return axis == 0 ? j >= u_first && j < u_first + nu : plane == 0;
+}
+
+int Refinement::Face::plane_of(int j, int k) const {
+    const int plane = (axis == 1 ? j : k) - fine_ring + reach;
+    return plane >= 0 && plane < planes ? plane : -1;
+}
+
+void Refinement::want_coarse(std::size_t row, Wanted& wanted) {
+    const int j = coarse_.row_y(row), k = coarse_.row_z(row);
+    for (Face& face : faces_) {
+        if (!face.holds(j, k)) continue;
+        const int v = (face.axis == 2 ? j : k) - face.v_first, u = face.axis == 0 ? j - face.u_first : 0;
+        Fields to{};
+        for (int f = 0; f < field_count; ++f) to[static_cast<std::size_t>(f)] = face.row(newest_, f, v) + u;
+        wanted.add(face.axis == 0 ? face.coarse : face.u_first, face.axis == 0 ? 1 : face.nu, to);
     }
-    if (turning.on()) {
-        to_middle(turning, face.line_of(face.at(face.coarse, face.u_first, face.v_first + v)),
-                  static_cast<std::size_t>(face.nu), face.row(newest_, 1, v), face.row(newest_, 2, v));
+}
+
+void Refinement::keep_coarse(std::size_t row, const Turning& turning) {
+    if (!turning.on()) return;
+    const int j = coarse_.row_y(row), k = coarse_.row_z(row);
+    for (Face& face : faces_) {
+        if (!face.holds(j, k)) continue;
+        const int v = (face.axis == 2 ? j : k) - face.v_first, u = face.axis == 0 ? j - face.u_first : 0;
+        const int first = face.axis == 0 ? face.coarse : face.u_first;
+        to_middle(turning, {static_cast<float>(first), static_cast<float>(j), 1, 0},
+                  static_cast<std::size_t>(face.axis == 0 ? 1 : face.nu), face.row(newest_, 1, v) + u,
+                  face.row(newest_, 2, v) + u);
+    }
+}
+
+void Refinement::want_fine(std::size_t row, Wanted& wanted) {
+    const int j = fine_.row_y(row), k = fine_.row_z(row);
+    for (Face& face : faces_) {
+        Fields to{};
+        if (face.axis == 0) {
+            float* const cells = edge(face.high);
+            for (std::size_t f = 0; f < field_count; ++f) to[f] = cells + f * planes;
+            wanted.add(face.fine_ring - reach, planes, to);
+            continue;
+        }
+        const int plane = face.plane_of(j, k);
+        if (plane < 0) continue;
+        for (int f = 0; f < field_count; ++f) {
+            to[static_cast<std::size_t>(f)] = face.kept_row(plane, f, face.axis == 1 ? k : j);
+        }
+        wanted.add(0, fine_.nx, to);
+    }
+}
+
+void Refinement::keep_fine(std::size_t row, const Turning& turning) {
+    const int j = fine_.row_y(row), k = fine_.row_z(row);
+    for (Face& face : faces_) {
+        if (face.axis == 0) {
+            float* const cells = edge(face.high);
+            if (turning.on()) {
+                to_middle(turning, {static_cast<float>(face.fine_ring - reach), static_cast<float>(j), 1, 0}, planes,
+                          cells + planes, cells + 2 * planes);
+            }
+            for (int f = 0; f < field_count; ++f) {
+                const float* const c = cells + f * planes;
+                face.kept_row(0, f, k)[j] = filtered(c[0], c[1], c[2], c[3], c[4]);
+            }
+            continue;
+        }
+        const int plane = turning.on() ? face.plane_of(j, k) : -1, v = face.axis == 1 ? k : j;
+        if (plane < 0) continue;
+        to_middle(turning, {0, static_cast<float>(j), 1, 0}, face.kept_count(), face.kept_row(plane, 1, v),
+                  face.kept_row(plane, 2, v));
     }
 }
 
@@ -144,29 +269,20 @@ void Refinement::fill(Populations& fine, float share, const float* push, const T
         const int r = below + n - 1;
         rows[n] = face.wraps ? (r + 2 * face.nv) % face.nv : r + 1;
     }
-    const float old_share = 1 - share;
     ConstFields in{};
     for (int f = 0; f < field_count; ++f) {
         if (between) {
-            const float *a0 = face.row(1 - newest_, f, rows[0]), *a1 = face.row(newest_, f, rows[0]);
-            const float *b0 = face.row(1 - newest_, f, rows[1]), *b1 = face.row(newest_, f, rows[1]);
-            const float *c0 = face.row(1 - newest_, f, rows[2]), *c1 = face.row(newest_, f, rows[2]);
-            const float *d0 = face.row(1 - newest_, f, rows[3]), *d1 = face.row(newest_, f, rows[3]);
-            for (std::size_t u = 0; u < nu; ++u) {
-                line[u] =
-                    old_share * half_way(a0[u], b0[u], c0[u], d0[u]) + share * half_way(a1[u], b1[u], c1[u], d1[u]);
+            const float *before[4], *after[4];
+            for (int n = 0; n < 4; ++n) {
+                before[n] = face.row(1 - newest_, f, rows[n]);
+                after[n] = face.row(newest_, f, rows[n]);
             }
+            half_way_rows(before, after, share, nu, line);
         } else {
-            const float *a0 = face.row(1 - newest_, f, rows[1]), *a1 = face.row(newest_, f, rows[1]);
-            for (std::size_t u = 0; u < nu; ++u) line[u] = old_share * a0[u] + share * a1[u];
+            rows_at_time(face.row(1 - newest_, f, rows[1]), face.row(newest_, f, rows[1]), share, nu, line);
         }
         float* const out = fields + static_cast<std::size_t>(f) * fine_nu;
-        const std::size_t pairs = fine_nu / 2;
-        for (std::size_t u = 0; u < pairs; ++u) {
-            out[2 * u] = line[u + 1];
-            out[2 * u + 1] = half_way(line[u], line[u + 1], line[u + 2], line[u + 3]);
-        }
-        out[2 * pairs] = line[pairs + 1];
+        refine_row(line, fine_nu, out);
         in[static_cast<std::size_t>(f)] = out;
     }
 
@@ -185,51 +301,20 @@ void Refinement::fill(Populations& fine, float share, const float* push, const T
     }
 }
 
-void Refinement::filter(const Populations& fine, const Turning& turning, std::size_t task) {
+void Refinement::filter(std::size_t task) {
     Face& face = faces_[filter_tasks_[task].face];
     const int v = filter_tasks_[task].v;
-    constexpr int planes = 2 * reach + 1;
-    const auto read = static_cast<std::size_t>(face.fine_nu - 2),
-               count = static_cast<std::size_t>(face.between_count());
-    float* const line = scratch(field_count * ((planes + 1) * read + Grid::lanes));
-    float* const cells = line + field_count * read;  // what one pass reads
-    if (face.axis == 0) {
-        // A whole vector of cells along x costs no more than the five that are wanted.
-        Fields fields{};
-        for (std::size_t f = 0; f < field_count; ++f) fields[f] = cells + f * Grid::lanes;
-        for (std::size_t u = 0; u < read; ++u) {
-            const auto p = face.at(face.fine_ring - reach, static_cast<int>(u), v);
-            flow::observe(fine_, fine, p[0], p[1], p[2], Grid::lanes, fine_relaxation_, smagorinsky_, fields);
-            if (turning.on()) {
-                const Line along_x{static_cast<float>(p[0]), static_cast<float>(p[1]), 1, 0};
-                to_middle(turning, along_x, planes, fields[1], fields[2]);
-            }
-            for (std::size_t f = 0; f < field_count; ++f) {
-                const float* const c = fields[f];
-                line[f * read + u] = filtered(c[0], c[1], c[2], c[3], c[4]);
-            }
-        }
-    } else {
-        const std::size_t size = field_count * read;
-        for (int n = 0; n < planes; ++n) {
-            Fields fields{};
-            for (std::size_t f = 0; f < field_count; ++f)
-                fields[f] = cells + static_cast<std::size_t>(n) * size + f * read;
-            const auto p = face.at(face.fine_ring + n - reach, 0, v);
-            flow::observe(fine_, fine, p[0], p[1], p[2], read, fine_relaxation_, smagorinsky_, fields);
-            if (turning.on()) to_middle(turning, face.line_of(p), read, fields[1], fields[2]);
-        }
-        const float *const a = cells, *const b = a + size, *const c = b + size, *const d = c + size,
-                           *const e = d + size;
-        for (std::size_t i = 0; i < size; ++i) line[i] = filtered(a[i], b[i], c[i], d[i], e[i]);
-    }
+    const std::size_t read = face.kept_count(), count = static_cast<std::size_t>(face.between_count());
+    float* const across = scratch(read);
     for (int f = 0; f < field_count; ++f) {
-        const float* const from = line + static_cast<std::size_t>(f) * read + 1;
-        float* const to = face.between_row(f, v);
-        for (std::size_t u = 0; u < count; ++u) {
-            const float* const c = from + 2 * u;
-            to[u] = filtered(c[0], c[1], c[2], c[3], c[4]);
+        const float* line = face.kept_row(0, f, v);
+        if (face.axis != 0) {
+            const float* rows[planes];
+            for (int n = 0; n < planes; ++n) rows[n] = face.kept_row(n, f, v);
+            filter_rows(rows, read, across);
+            line = across;
         }
+        coarsen_row(line, count, face.between_row(f, v));
     }
 }
 
@@ -247,12 +332,12 @@ void Refinement::restrict_to(Populations& coarse, const float* push, const Turni
             const float* const row = face.between_row(f, fine_v);
             std::copy(row, row + count, to);
         } else {
-            const auto row = [&](int n) {
-                const int layer = fine_v + n;
-                return face.between_row(f, face.wraps ? (layer + fine_.nz) % fine_.nz : layer);
-            };
-            const float *const a = row(-2), *const b = row(-1), *const c = row(0), *const d = row(1), *const e = row(2);
-            for (std::size_t u = 0; u < count; ++u) to[u] = filtered(a[u], b[u], c[u], d[u], e[u]);
+            const float* rows[planes];
+            for (int n = 0; n < planes; ++n) {
+                const int layer = fine_v + n - reach;
+                rows[n] = face.between_row(f, face.wraps ? (layer + fine_.nz) % fine_.nz : layer);
+            }
+            filter_rows(rows, count, to);
         }
         in[static_cast<std::size_t>(f)] = to;
     }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "bake/flow/domain.h"
@@ -21,23 +22,31 @@ public:
     Refinement(const Block& fine, const Block& coarse, float fine_relaxation, float coarse_relaxation,
                float smagorinsky);
 
-    // Each of the following is a number of independent tasks, so that threads can share them; no result depends on who
-    // does which. `turning` is of the step and the block that is read or written; in a frame that turns, velocities
-    // pass as they are in the middle of a step, because a step's force is not the same in both blocks.
+    /// Of one round this block, about.
+    static std::uint64_t bytes(const Grid& fine);
 
-    /// Before observe: what was new is old.
+    // Rows and tasks are independent, so that threads can share them; no result depends on who does which. `turning` is
+    // of the step and the block that is read or written; in a frame that turns, velocities pass as they are in the
+    // middle of a step, because a step's force is not the same in both blocks.
+
+    /// What is kept of a row while it collides, and what is left to do with it afterwards. Reading the rows once more for
+    /// it took a fifth of a run. The coarse planes of each step:
+    void want_coarse(std::size_t row, Wanted& wanted);
+    void keep_coarse(std::size_t row, const Turning& turning);
+    /// The fine nodes next inside the planes and those around them, of the second step of two:
+    void want_fine(std::size_t row, Wanted& wanted);
+    void keep_fine(std::size_t row, const Turning& turning);
+
+    /// Before the next coarse step: what was new is old.
     void turn() { newest_ = 1 - newest_; }
-    std::size_t observe_tasks() const { return observe_tasks_.size(); }
-    /// Reads the coarse planes of the step that pulls from `coarse`.
-    void observe(const Populations& coarse, const Turning& turning, std::size_t task);
 
     std::size_t fill_tasks() const { return fill_tasks_.size(); }
     /// Fills the fine block's ghosts for the time `share` of a coarse step after the older of the two last planes.
     void fill(Populations& fine, float share, const float* push, const Turning& turning, std::size_t task) const;
 
     std::size_t filter_tasks() const { return filter_tasks_.size(); }
-    /// Reads the fine step that pulls from `fine` next inside the planes, smoothed to what coarse cells can carry.
-    void filter(const Populations& fine, const Turning& turning, std::size_t task);
+    /// Smooths what was kept of the fine block to what coarse cells can carry.
+    void filter(std::size_t task);
 
     std::size_t restrict_tasks() const { return restrict_tasks_.size(); }
     /// After all of filter: writes the coarse nodes next inside the planes.
@@ -60,7 +69,9 @@ private:
         int v_scale = 2;               // fine nodes a coarse one along v (1: two dimensions)
         std::array<int, 5> inward{};   // directions that enter the fine block
         std::array<std::vector<float>, 2> fields;
-        std::vector<float> between;  // what filter hands to restrict_to: coarse nodes along u, fine ones along v
+        // Of the fine nodes: the planes, side by side (of a face across rows already smoothed to one), and what filter
+        // hands to restrict_to, coarse nodes along u and fine ones along v.
+        std::vector<float> kept, between;
 
         int between_rows() const { return wraps ? fine_nv : fine_nv - 2; }
         int between_count() const { return (fine_nu - 7) / 2; }
@@ -68,6 +79,14 @@ private:
             return between.data() + (static_cast<std::ptrdiff_t>(field) * between_rows() + n) * between_count();
         }
         const float* between_row(int field, int n) const { return const_cast<Face*>(this)->between_row(field, n); }
+
+        std::size_t kept_count() const { return static_cast<std::size_t>(fine_nu - 2); }
+        float* kept_row(int plane, int field, int n) {
+            const std::size_t row =
+                static_cast<std::size_t>(plane * field_count + field) * static_cast<std::size_t>(between_rows()) +
+                static_cast<std::size_t>(n);
+            return kept.data() + row * kept_count();
+        }
 
         float* row(int time, int field, int n) {
             return fields[static_cast<std::size_t>(time)].data() + (static_cast<std::ptrdiff_t>(field) * nv + n) * nu;
@@ -79,6 +98,10 @@ private:
         std::array<int, 3> at(int plane, int along_u, int along_v) const;
         /// Nodes of a row from `p` on, `step` nodes apart along u.
         Line line_of(const std::array<int, 3>& p) const;
+        /// Coarse row (j, k) holds nodes of the plane that are kept: one of a face across rows, else a row of them.
+        bool holds(int j, int k) const;
+        /// Which of the planes around the ring fine row (j, k) of a face along rows lies in; -1: in none.
+        int plane_of(int j, int k) const;
     };
     struct Task {
         std::size_t face;
@@ -90,7 +113,7 @@ private:
     Grid fine_, coarse_;
     float fine_relaxation_, coarse_relaxation_, smagorinsky_;
     std::vector<Face> faces_;
-    std::vector<Task> observe_tasks_, fill_tasks_, filter_tasks_, restrict_tasks_;
+    std::vector<Task> fill_tasks_, filter_tasks_, restrict_tasks_;
     int newest_ = 0;
 };
 

@@ -60,7 +60,7 @@ double interior_rate(double seconds, int threads) {
     const double time = shortest(seconds, [&] {
         shares.reset();
 #pragma omp parallel num_threads(threads)
-        shares.each([&](std::size_t r) { collide_row(grid, from, to, r, collision); });
+        shares.each([&](std::size_t r) { collide_row(grid, from, to, r, collision, {}); });
         std::swap(from, to);
     });
     return static_cast<double>(grid.cells()) / time * 1e-6;

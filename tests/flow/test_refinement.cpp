@@ -1,8 +1,11 @@
 // Blocks of different cells against an exact flow that goes through them.
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "bake/flow/blocks.h"
+#include "bake/flow/kernel.h"
 #include "bake/flow/nest.h"
 #include "tests/support/catch.h"
 
@@ -51,6 +54,48 @@ struct Vortex {
 };
 
 }  // namespace
+
+TEST_CASE("what is kept of a row while it collides is what is observed of it", "[flow]") {
+    const Grid one_chunk{77, 3, 3, false}, two_chunks{141, 3, 3, false};
+    for (const Grid& g : {one_chunk, two_chunks}) {
+        Populations from(g), to(g), plain(g);
+        std::uint32_t random = 1;
+        for (int i = 0; i < direction_count; ++i) {
+            for (std::size_t cell = 0; cell < g.allocated(); ++cell) {
+                random = random * 1664525 + 1013904223;
+                from.at(i)[cell] = weight(i) * 0.2f * (static_cast<float>(random >> 8) / 8388608 - 1);
+            }
+        }
+        const std::vector<float> times(g.pitch(), 0.503f);
+        Collision collision;
+        collision.relaxation = times.data();
+        collision.smagorinsky = 0.01f;
+        collision.push[0] = 0.001f;
+        const std::size_t row = 4;
+        const auto width = static_cast<std::size_t>(g.nx);
+        std::vector<float> observed(field_count * width), whole(field_count * width), part(field_count * 5);
+        const auto rows_of = [](std::vector<float>& memory, std::size_t size) {
+            Fields fields{};
+            for (std::size_t f = 0; f < field_count; ++f) fields[f] = memory.data() + f * size;
+            return fields;
+        };
+        observe(g, from, 0, 1, 1, width, 0.503f, 0.01f, rows_of(observed, width));
+        Wanted wanted;
+        wanted.add(0, g.nx, rows_of(whole, width));
+        const int first = g.nx - 15;
+        wanted.add(first, 5, rows_of(part, 5));
+        collide_row(g, from, to, row, collision, wanted);
+        CHECK(whole == observed);
+        for (std::size_t n = 0; n < part.size(); ++n) {
+            CHECK(part[n] == observed[n / 5 * width + static_cast<std::size_t>(first) + n % 5]);
+        }
+        collide_row(g, from, plain, row, collision, {});
+        for (int i = 0; i < direction_count; ++i) {
+            const std::size_t begin = g.row(row);
+            CHECK(std::equal(to.at(i) + begin, to.at(i) + begin + g.nx, plain.at(i) + begin));
+        }
+    }
+}
 
 TEST_CASE("a vortex goes through blocks of other cells as if they were not there", "[flow]") {
     Domain d = empty_nest(true, 24);

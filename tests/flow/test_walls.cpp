@@ -72,7 +72,7 @@ double radius_felt(const Domain& d, double radius, double viscosity) {
         for (std::size_t s = 0; s < wall.stretches(); ++s) wall.gather(from, 0, s);
         for (std::size_t s = 0; s < wall.stretches(); ++s) wall.scatter(from, s);
         for (std::size_t r = 0; r < grid.rows(); ++r) {
-            collide_row(grid, from, to, r, collision);
+            collide_row(grid, from, to, r, collision, {});
             for (std::size_t x = 0; x < grid.pitch(); ++x) {
                 if (water[grid.row(r) + x] != 0) continue;
                 for (int i = 0; i < direction_count; ++i) to.at(i)[grid.row(r) + x] = 0;
