@@ -6,6 +6,7 @@ import json
 import math
 import os
 import re
+import shutil
 import signal
 import struct
 import subprocess
@@ -155,6 +156,28 @@ def test_other_sources_that_step_alike_are_the_same_solver(stub):
     assert len(stub.calls()) == 3 and not stub.kept("spin-50")["begins"]
 
 
+def test_another_machine_goes_on_from_what_the_page_was_made_of(stub):
+    stub.run()
+    stub.calls(), stub.calls("looks")
+    shutil.rmtree(stub.out)
+    assert "not measured" not in stub.run("--list")
+    assert "kept" in stub.run("--only", "spin-200") and stub.calls() == []
+    known = stub.folder / "docs" / "validation-flow.json"
+    records = json.loads(known.read_text())
+    before = stub.page
+    stub.run("--page")
+    assert stub.page == before and json.loads(known.read_text()) == records
+
+    # What other sources gave is looked at first; what has failed is tried again.
+    known.write_text(json.dumps({name: {**record, "solver": "another"} for name, record in records.items()}))
+    stub.run("--only", "spin-50")
+    assert stub.calls("looks") and stub.kept("spin-50")["solver"] == records["spin-50"]["solver"]
+    stub.answer({"0,0,0.08": {"status": 1}})
+    stub.run("--only", "spin-200", "--fresh")
+    stub.run("--page")
+    assert "spin-200" not in json.loads(known.read_text())
+
+
 def test_the_solver_is_another_when_its_code_changes(lib, tmp_path):
     runs = lib("flow_runs")
     assert len(runs.solver_sources(ROOT)) > 20
@@ -266,6 +289,7 @@ def test_the_page(stub, lib):
 
     # What is gone is not on the page.
     (stub.out / "cases" / "sphere-10000.json").unlink()
+    (stub.folder / "docs" / "validation-flow.json").unlink()
     stub.run("--page")
     assert "| sphere-10000 | 10,000 | drag | not measured | 0.4 |" in stub.page
 
