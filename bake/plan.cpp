@@ -42,7 +42,7 @@ Preset preset(Quality quality) {
         case Quality::high:
             return {4, 4, 0, 36, 20, 40, kHighRegionError, {0.03, 0.08}, 10, 66};
         default:
-            return {3, 3, 0, 24, 20, 16, kStandardRegionError, {0.06, 0.15}, 8, 38};
+            return {3, 6, 30, 24, 20, 16, kStandardRegionError, {0.06, 0.15}, 8, 38};
     }
 }
 

@@ -1,10 +1,11 @@
-"""The page docs/validation-map.md from what scripts/validate-map gathered."""
+"""The page docs/validation-map.md from what scripts/validate-map gathered. What was not run this time keeps the row that the
+page has: a part takes minutes to an hour, and its steps lie on the machine that ran them."""
 from __future__ import annotations
 
 import datetime
 import math
 
-from map_cases import BODIES, LEAST_SWING, LONG_START, SPEED_PERCENT, SPIN_PERCENT, long_duration
+from map_cases import BAKES, BODIES, LEAST_SWING, LONG_START, SPEED_PERCENT, SPIN_PERCENT, long_duration
 
 
 FLUCTUATIONS = f"""## Fluctuations there
@@ -17,9 +18,21 @@ Directions in which the run swings by less than {100 * LEAST_SWING:.1f} % of the
 the map's strength there, of that force."""
 
 
-def table(head, rows):
+def rows_under(page, heading):
+    """The cells of the table under a heading of a page."""
+    section = page.partition(f"## {heading}\n")[2].partition("\n## ")[0]
+    lines = [line for line in section.splitlines() if line.startswith("| ")]
+    return [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines[2:]]
+
+
+def table(head, rows, before):
+    """`before`: rows of the page that there was; of one that has the same first cell, the new one stands."""
+    merged = {row[0]: row for row in before if len(row) == len(head)}
+    merged.update((str(row[0]), row) for row in rows)
+    order = [bake.name for bake in BAKES]
+    names = sorted(merged, key=lambda name: order.index(name) if name in order else len(order))
     lines = ["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |"]
-    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in merged[name]) + " |" for name in names])
 
 
 def percent(share, digits=1):
@@ -44,7 +57,7 @@ def held_out(made):
     return math.sqrt(sum(e * e for e in errors) / len(errors)), max(errors)
 
 
-def bakes_table(bakes):
+def bakes_table(bakes, before):
     rows = []
     for made in bakes:
         bake, result = made["bake"], made["made"]["result"]
@@ -54,10 +67,10 @@ def bakes_table(bakes):
         rows.append((bake.name, BODIES[bake.body].title, len(made["info"]["provenance"]["directions"]), made["info"]["sources"],
                      seconds(took) + (f" (busy machine: load {load:.0f} on {cores} cores)" if busy else ""),
                      f"{seconds(bake.longest)}: {good}" if bake.longest else "–", made["made"]["version"][:8]))
-    return table(("map", "object", "flows", "sources", "time", "asked", "program"), rows)
+    return table(("map", "object", "flows", "sources", "time", "asked", "program"), rows, before)
 
 
-def directions_table(bakes):
+def directions_table(bakes, before):
     rows = []
     for made in bakes:
         if not made["held"]:
@@ -68,10 +81,10 @@ def directions_table(bakes):
                      f"{percent(asked[0], 0)}, {percent(asked[1], 0)}: {verdict(rms <= asked[0] and worst <= asked[1])}" if asked else "–",
                      percent(info["direction_error_rms"]), percent(info["direction_error_worst"]),
                      percent(sum(one["run"]["uncertainty"] for one in made["held"]) / len(made["held"]))))
-    return table(("map", "rms", "worst", "asked", "stated rms", "stated worst", "runs' own uncertainty"), rows)
+    return table(("map", "rms", "worst", "asked", "stated rms", "stated worst", "runs' own uncertainty"), rows, before)
 
 
-def fluctuations_table(bakes):
+def fluctuations_table(bakes, before):
     rows = []
     for made in bakes:
         least = LEAST_SWING * made["peak"]
@@ -92,10 +105,10 @@ def fluctuations_table(bakes):
         if strong or weak:
             rows.append(row)
     return table(("map", "strength, map over run (geometric mean, its error)", "range", "within 10 %", "the run's own error",
-                  "that of one period", "map at most where runs swing less"), rows)
+                  "that of one period", "map at most where runs swing less"), rows, before)
 
 
-def sizes_table(bakes):
+def sizes_table(bakes, before):
     rows = []
     for made in bakes:
         size, limit = made["made"]["result"]["file_bytes"] / 1e3, made["bake"].kilobytes
@@ -103,18 +116,18 @@ def sizes_table(bakes):
         found = made["verified"]["quantisation_error"]
         rows.append((made["bake"].name, f"{size:.0f} kB", f"{limit:.0f} kB: {verdict(size <= limit and stated < 0.01)}" if limit else "–",
                      percent(stated, 2), percent(found, 2), f"{made['raw_bytes'] / 1e3:.0f} kB"))
-    return table(("map", "file", "asked", "stated error", "found against the raw tables", "raw tables, fp32 by zstd"), rows)
+    return table(("map", "file", "asked", "stated error", "found against the raw tables", "raw tables, fp32 by zstd"), rows, before)
 
 
-def speeds_table(rows):
+def speeds_table(rows, before):
     out = []
     for row in rows:
         several, one = row["several"] / row["run"] - 1, row["one"] / row["run"] - 1
         out.append((f"{row['reynolds']:,}", percent(several), percent(one), verdict(abs(several) <= SPEED_PERCENT / 100)))
-    return table(("Reynolds number", "map of five speeds", "map of one (Re 1,000)", f"within {SPEED_PERCENT} %"), out)
+    return table(("Reynolds number", "map of five speeds", "map of one (Re 1,000)", f"within {SPEED_PERCENT} %"), out, before)
 
 
-def spin_table(rows):
+def spin_table(rows, before):
     out = []
     for row in rows:
         if not {"with", "without", "run"} <= row.keys():
@@ -122,28 +135,36 @@ def spin_table(rows):
         off = row["with"] / row["run"] - 1
         out.append((row["axis"], f"{row['run']:.3g} N m", percent(off), percent(row["without"] / row["run"] - 1),
                     percent(row["uncertainty"]), verdict(abs(off) <= SPIN_PERCENT / 100)))
-    return table(("axis", "direct run", "map with spins", "paper's rule", "run's own uncertainty", f"within {SPIN_PERCENT} %"), out)
+    return table(("axis", "direct run", "map with spins", "paper's rule", "run's own uncertainty", f"within {SPIN_PERCENT} %"), out, before)
 
 
-def page(bakes, speeds, spin, commit, machine, versions, missing):
+def held_out_in_words(made):
+    rms, worst = held_out(made)
+    return f"{made['bake'].name}: held out {percent(rms)} rms, {percent(worst)} at worst; {seconds(made['made']['seconds'])}"
+
+
+def page(bakes, speeds, spin, commit, machine, versions, missing, before):
     parts = [f"""# Maps against direct runs
 
 Written by `scripts/validate-map` ({datetime.date.today():%Y-%m-%d}, commit {commit}, {machine}; program, by the first
-digits of its SHA-256, direct runs since they have series by that of the solver's sources: {", ".join(version[:15 if version.startswith("solver") else 8] for version in versions)}); how maps are made is in [bake.md](bake.md). Errors of a force are shares of the largest mean force that the map has over its solved directions."""]
+digits of its SHA-256, direct runs by that of the solver's sources: {", ".join(version[:15 if version.startswith("solver") else 8] for version in versions)}); how maps are made is in [bake.md](bake.md). Errors of a force are shares of the largest mean force that the map has over its solved directions.
+What was not run then has the rows of the page before; the program that made a map is in the first table."""]
     if missing:
         parts.append(f"Not run: {len(missing)} steps, among them {', '.join(missing[:4])}.")
-    if bakes:
-        parts += ["## Bakes", bakes_table(bakes),
-                  "## Directions held out\n\nEight directions all round that no map was made from. The direct run has the cells of the map's flows, but its record begins "
-                  f"after {LONG_START} lengths and lasts {long_duration(bakes[0]['info']):.0f}: what the map's own flows have of their start, and of chance, is a part of the error. "
-                  "*Stated* is what the map says of itself: each of its flows predicted from the others.",
-                  directions_table(bakes),
-                  FLUCTUATIONS, fluctuations_table(bakes),
-                  "## Size", sizes_table(bakes)]
-    if speeds:
-        parts += ["## Several speeds\n\nThe drag of a sphere from a map against a direct run at the same Reynolds number, none of which was baked.",
-                  speeds_table(speeds)]
-    if spin:
-        parts += ["## Spin\n\nThe torque on the paddle (draft) that turns about its centroid in still water; *xy* lies between the axes that were baked.",
-                  spin_table(spin)]
+    period = max((long_duration(made["info"]) for made in bakes), default=80)
+    parts += [
+        "## Bakes", bakes_table(bakes, rows_under(before, "Bakes")),
+        "## Directions held out",
+        "Eight directions all round that no map was made from. The direct run has the cells of the map's flows, but its record begins "
+        f"after {LONG_START} lengths and lasts {period:.0f}: what the map's own flows have of their start, and of chance, is a part of the error. "
+        "*Stated* is what the map says of itself: each of its flows predicted from the others.",
+        directions_table(bakes, rows_under(before, "Directions held out")),
+        FLUCTUATIONS, fluctuations_table(bakes, rows_under(before, "Fluctuations there")),
+        "## Size", sizes_table(bakes, rows_under(before, "Size")),
+        "## Several speeds",
+        "The drag of a sphere from a map against a direct run at the same Reynolds number, none of which was baked.",
+        speeds_table(speeds or [], rows_under(before, "Several speeds")),
+        "## Spin",
+        "The torque on the paddle (draft) that turns about its centroid in still water; *xy* lies between the axes that were baked.",
+        spin_table(spin or [], rows_under(before, "Spin"))]
     return "\n\n".join(parts) + "\n"
