@@ -208,7 +208,7 @@ BakePlan plan_bake(const BakeOptions& options) {
     std::vector<Vec3d> first = distinct_directions(plan.symmetry, frequency);
     while (!options.directions && frequency < p.most_frequency) {
         std::vector<Vec3d> more = distinct_directions(plan.symmetry, frequency + 1);
-        if (more.size() > p.flows) break;
+        if (more.size() > p.flows || more.size() == first.size()) break;
         first = std::move(more);
         ++frequency;
     }

@@ -14,7 +14,7 @@ namespace frm::cli {
 namespace {
 
 constexpr double density = 1000, speed = 0.5, viscosity = 1e-6, pi = 3.14159265358979323846;
-constexpr std::uint32_t samples = 32, fluctuation_frequency = 3;  ///< 38 directions, as a standard bake begins with
+constexpr std::uint32_t samples = 32, fluctuation_frequency = 3;  ///< 38 directions, a standard bake's without symmetry
 
 struct Facet {
     Vec3d centre, normal;  ///< length of the normal: the area

@@ -79,11 +79,11 @@ LEAST_SWING = 0.005  # of the largest mean force, which is what a map may err by
 
 # Direct runs, in lengths of the map: by then the wake is no longer that of the start (docs/bake.md), and some ten windows of
 # a draft tell its strength to 10 %.
-LONG_START = 34
+LONG_START, LONG_RECORD, LONG_PERIODS = 34, 80, 4.25
 
 
 def long_duration(info):
-    return max(80, 4.25 * info["provenance"]["period_lengths"])
+    return max(LONG_RECORD, LONG_PERIODS * info["provenance"]["period_lengths"])
 
 
 # Several speeds: a sphere 10 cm across in water, Reynolds number = speed * 1e5.

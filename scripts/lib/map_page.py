@@ -5,7 +5,8 @@ from __future__ import annotations
 import datetime
 import math
 
-from map_cases import BAKES, BODIES, LEAST_SWING, LONG_START, SPEED_PERCENT, SPIN_PERCENT, long_duration
+from map_cases import (ASKED_REYNOLDS, BAKES, BODIES, LEAST_SWING, LONG_PERIODS, LONG_RECORD, LONG_START, SPEED_PERCENT,
+                       SPIN_AXES, SPIN_PERCENT)
 
 
 FLUCTUATIONS = f"""## Fluctuations there
@@ -18,21 +19,34 @@ Directions in which the run swings by less than {100 * LEAST_SWING:.1f} % of the
 the map's strength there, of that force."""
 
 
-def rows_under(page, heading):
-    """The cells of the table under a heading of a page."""
+def lines_under(page, heading):
+    """The lines of the table under a heading of a page."""
     section = page.partition(f"## {heading}\n")[2].partition("\n## ")[0]
-    lines = [line for line in section.splitlines() if line.startswith("| ")]
-    return [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines[2:]]
+    return [line for line in section.splitlines() if line.startswith("| ")]
 
 
-def table(head, rows, before):
-    """`before`: rows of the page that there was; of one that has the same first cell, the new one stands."""
-    merged = {row[0]: row for row in before if len(row) == len(head)}
-    merged.update((str(row[0]), row) for row in rows)
-    order = [bake.name for bake in BAKES]
-    names = sorted(merged, key=lambda name: order.index(name) if name in order else len(order))
-    lines = ["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |"]
-    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in merged[name]) + " |" for name in names])
+def cells(line):
+    return [cell.strip() for cell in line.strip("| ").split(" | ")]
+
+
+def line(row):
+    return "| " + " | ".join(str(cell) for cell in row) + " |"
+
+
+def table(head, names, rows, anew, before):
+    """A row for each of the names that has one: of those in `anew` only what is in `rows`, of the others what there was under
+    the same head in the lines `before`."""
+    merged = {cells(old)[0]: old for old in before[2:]} if before and cells(before[0]) == list(head) else {}
+    merged = {name: old for name, old in merged.items() if name not in anew}
+    merged.update((str(row[0]), line(row)) for row in rows)
+    return "\n".join([line(head), line("---" for _ in head), *(merged[name] for name in names if name in merged)])
+
+
+BAKE_NAMES = [bake.name for bake in BAKES]
+
+
+def bake_table(head, bakes, rows, before):
+    return table(head, BAKE_NAMES, rows, [made["bake"].name for made in bakes], before)
 
 
 def percent(share, digits=1):
@@ -67,7 +81,7 @@ def bakes_table(bakes, before):
         rows.append((bake.name, BODIES[bake.body].title, len(made["info"]["provenance"]["directions"]), made["info"]["sources"],
                      seconds(took) + (f" (busy machine: load {load:.0f} on {cores} cores)" if busy else ""),
                      f"{seconds(bake.longest)}: {good}" if bake.longest else "–", made["made"]["version"][:8]))
-    return table(("map", "object", "flows", "sources", "time", "asked", "program"), rows, before)
+    return bake_table(("map", "object", "flows", "sources", "time", "asked", "program"), bakes, rows, before)
 
 
 def directions_table(bakes, before):
@@ -81,7 +95,7 @@ def directions_table(bakes, before):
                      f"{percent(asked[0], 0)}, {percent(asked[1], 0)}: {verdict(rms <= asked[0] and worst <= asked[1])}" if asked else "–",
                      percent(info["direction_error_rms"]), percent(info["direction_error_worst"]),
                      percent(sum(one["run"]["uncertainty"] for one in made["held"]) / len(made["held"]))))
-    return table(("map", "rms", "worst", "asked", "stated rms", "stated worst", "runs' own uncertainty"), rows, before)
+    return bake_table(("map", "rms", "worst", "asked", "stated rms", "stated worst", "runs' own uncertainty"), bakes, rows, before)
 
 
 def fluctuations_table(bakes, before):
@@ -104,8 +118,8 @@ def fluctuations_table(bakes, before):
                         percent(of_one, 0)]
         if strong or weak:
             rows.append(row)
-    return table(("map", "strength, map over run (geometric mean, its error)", "range", "within 10 %", "the run's own error",
-                  "that of one period", "map at most where runs swing less"), rows, before)
+    return bake_table(("map", "strength, map over run (geometric mean, its error)", "range", "within 10 %", "the run's own error",
+                  "that of one period", "map at most where runs swing less"), bakes, rows, before)
 
 
 def sizes_table(bakes, before):
@@ -116,7 +130,7 @@ def sizes_table(bakes, before):
         found = made["verified"]["quantisation_error"]
         rows.append((made["bake"].name, f"{size:.0f} kB", f"{limit:.0f} kB: {verdict(size <= limit and stated < 0.01)}" if limit else "–",
                      percent(stated, 2), percent(found, 2), f"{made['raw_bytes'] / 1e3:.0f} kB"))
-    return table(("map", "file", "asked", "stated error", "found against the raw tables", "raw tables, fp32 by zstd"), rows, before)
+    return bake_table(("map", "file", "asked", "stated error", "found against the raw tables", "raw tables, fp32 by zstd"), bakes, rows, before)
 
 
 def speeds_table(rows, before):
@@ -124,7 +138,9 @@ def speeds_table(rows, before):
     for row in rows:
         several, one = row["several"] / row["run"] - 1, row["one"] / row["run"] - 1
         out.append((f"{row['reynolds']:,}", percent(several), percent(one), verdict(abs(several) <= SPEED_PERCENT / 100)))
-    return table(("Reynolds number", "map of five speeds", "map of one (Re 1,000)", f"within {SPEED_PERCENT} %"), out, before)
+    names = [f"{reynolds:,}" for reynolds in ASKED_REYNOLDS]
+    return table(("Reynolds number", "map of five speeds", "map of one (Re 1,000)", f"within {SPEED_PERCENT} %"), names, out,
+                 names if rows else [], before)
 
 
 def spin_table(rows, before):
@@ -135,7 +151,8 @@ def spin_table(rows, before):
         off = row["with"] / row["run"] - 1
         out.append((row["axis"], f"{row['run']:.3g} N m", percent(off), percent(row["without"] / row["run"] - 1),
                     percent(row["uncertainty"]), verdict(abs(off) <= SPIN_PERCENT / 100)))
-    return table(("axis", "direct run", "map with spins", "paper's rule", "run's own uncertainty", f"within {SPIN_PERCENT} %"), out, before)
+    return table(("axis", "direct run", "map with spins", "paper's rule", "run's own uncertainty", f"within {SPIN_PERCENT} %"),
+                 list(SPIN_AXES), out, list(SPIN_AXES) if rows else [], before)
 
 
 def held_out_in_words(made):
@@ -143,28 +160,28 @@ def held_out_in_words(made):
     return f"{made['bake'].name}: held out {percent(rms)} rms, {percent(worst)} at worst; {seconds(made['made']['seconds'])}"
 
 
-def page(bakes, speeds, spin, commit, machine, versions, missing, before):
-    parts = [f"""# Maps against direct runs
-
-Written by `scripts/validate-map` ({datetime.date.today():%Y-%m-%d}, commit {commit}, {machine}; program, by the first
+def page(bakes, speeds, spin, commit, machine, versions, before):
+    held = directions_table(bakes, lines_under(before, "Directions held out"))
+    there = [cells(row)[0] for row in held.splitlines()]
+    missing = [bake.name for bake in BAKES if bake.held_out and bake.name not in there]
+    parts = [
+        "# Maps against direct runs",
+        f"""Written by `scripts/validate-map` ({datetime.date.today():%Y-%m-%d}, commit {commit}, {machine}; program, by the first
 digits of its SHA-256, direct runs by that of the solver's sources: {", ".join(version[:15 if version.startswith("solver") else 8] for version in versions)}); how maps are made is in [bake.md](bake.md). Errors of a force are shares of the largest mean force that the map has over its solved directions.
-What was not run then has the rows of the page before; the program that made a map is in the first table."""]
-    if missing:
-        parts.append(f"Not run: {len(missing)} steps, among them {', '.join(missing[:4])}.")
-    period = max((long_duration(made["info"]) for made in bakes), default=80)
-    parts += [
-        "## Bakes", bakes_table(bakes, rows_under(before, "Bakes")),
+What was not run then has the rows of the page before; the program that made a map is in the first table.""",
+        *([f"Not run: {', '.join(missing)} in directions held out."] if missing else []),
+        "## Bakes", bakes_table(bakes, lines_under(before, "Bakes")),
         "## Directions held out",
         "Eight directions all round that no map was made from. The direct run has the cells of the map's flows, but its record begins "
-        f"after {LONG_START} lengths and lasts {period:.0f}: what the map's own flows have of their start, and of chance, is a part of the error. "
-        "*Stated* is what the map says of itself: each of its flows predicted from the others.",
-        directions_table(bakes, rows_under(before, "Directions held out")),
-        FLUCTUATIONS, fluctuations_table(bakes, rows_under(before, "Fluctuations there")),
-        "## Size", sizes_table(bakes, rows_under(before, "Size")),
+        f"after {LONG_START} lengths and lasts {LONG_RECORD}, or {LONG_PERIODS} of the map's periods if that is longer: what the map's own flows have of "
+        "their start, and of chance, is a part of the error. *Stated* is what the map says of itself: each of its flows predicted from the others.",
+        held,
+        FLUCTUATIONS, fluctuations_table(bakes, lines_under(before, "Fluctuations there")),
+        "## Size", sizes_table(bakes, lines_under(before, "Size")),
         "## Several speeds",
         "The drag of a sphere from a map against a direct run at the same Reynolds number, none of which was baked.",
-        speeds_table(speeds or [], rows_under(before, "Several speeds")),
+        speeds_table(speeds or [], lines_under(before, "Several speeds")),
         "## Spin",
         "The torque on the paddle (draft) that turns about its centroid in still water; *xy* lies between the axes that were baked.",
-        spin_table(spin or [], rows_under(before, "Spin"))]
+        spin_table(spin or [], lines_under(before, "Spin"))]
     return "\n\n".join(parts) + "\n"
