@@ -82,6 +82,15 @@ def commit(root):
     return name.stdout.strip() + ("+" if changed.stdout.strip() else "")
 
 
+def read_object(path):
+    """Of a JSON file; empty where there is none."""
+    try:
+        found = json.loads(path.read_text())
+    except (OSError, ValueError):
+        found = {}
+    return found if isinstance(found, dict) else {}
+
+
 class Stopped(Exception):
     """The program was told to stop; the case is not done."""
 
@@ -91,10 +100,7 @@ class Runs:
 
     def __init__(self, out, program, root, known):
         self.out, self.program = pathlib.Path(out), program
-        try:
-            self.known = json.loads(known.read_text())
-        except (OSError, ValueError):
-            self.known = {}
+        self.known = read_object(known)
         self.solver, self.commit, self.machine = solver_version(root), commit(root), machine()
         self.reads = solver_version(root, READS)
         self.meshes = {}
@@ -115,21 +121,17 @@ class Runs:
         """What the case gave with this solver, mesh and command line, or None. With `look`, one whose steps are by other
         sources is this solver too if the case begins with the same bits: a run has the same bits whatever the threads, and
         other steps show in its first ones."""
-        try:
-            record = json.loads(self.path(case).read_text())
-        except (OSError, ValueError):
-            record = self.known.get(case.name, {})
-        if record.get("command") != case.command() or record.get("mesh_sha256") != self.mesh(case):
-            return None
-        if record.get("solver") == self.solver:
-            return record
-        if not look or record.get("reads") != self.reads or not record.get("begins"):
-            return None
-        if self.begins(case) != record["begins"]:
-            return None
-        record["solver"] = self.solver
-        self.keep(case, record)
-        return record
+        records = [record for record in (read_object(self.path(case)), self.known.get(case.name, {}))
+                   if record.get("command") == case.command() and record.get("mesh_sha256") == self.mesh(case)]
+        for record in records:
+            if record.get("solver") == self.solver:
+                return record
+        for record in records if look else ():
+            if record.get("reads") == self.reads and record.get("begins") and self.begins(case) == record["begins"]:
+                record["solver"] = self.solver
+                self.keep(case, record)
+                return record
+        return None
 
     def keep(self, case, record):
         write_whole(self.path(case), json.dumps(record, indent=2).encode() + b"\n")
@@ -147,7 +149,7 @@ class Runs:
         result = self.outcome(self.ask(words)).get("result")
         if result is None:
             return None
-        bits = {key: value for key, value in result.items() if key not in ("seconds", "mlups")}
+        bits = {key: value for key, value in result.items() if key not in ("seconds", "mlups", "bytes")}
         return hashlib.sha256(json.dumps(bits, sort_keys=True).encode()).hexdigest()[:16]
 
     def run(self, case, longest):

@@ -143,6 +143,11 @@ def test_other_sources_that_step_alike_are_the_same_solver(stub):
     assert stub.calls() == [] and stub.calls("looks") == []  # it is this solver now
 
     came_from(solver="another")
+    stub.answer({"": {"bytes": 6e7, "seconds": 3, "mlups": 50}})  # of this, no number depends
+    assert stub.run("--only", "spin-*").count("kept") == 3
+    stub.calls("looks")
+
+    came_from(solver="another")
     stub.answer({"0,0,0.08": {"cells": 123457}})  # one of them begins otherwise
     stub.run("--only", "spin-*")
     assert len(stub.calls()) == 1 and stub.kept("spin-200")["result"]["cells"] == 123457
@@ -168,14 +173,24 @@ def test_another_machine_goes_on_from_what_the_page_was_made_of(stub):
     stub.run("--page")
     assert stub.page == before and json.loads(known.read_text()) == records
 
-    # What other sources gave is looked at first; what has failed is tried again.
-    known.write_text(json.dumps({name: {**record, "solver": "another"} for name, record in records.items()}))
+    # What other sources gave is looked at first, and is not lost where it is not; what has failed is tried again.
+    others = {name: {**record, "solver": "another"} for name, record in records.items()}
+    known.write_text(json.dumps(others))
+    shutil.rmtree(stub.out)
+    stub.run("--page")
+    assert "not measured" in stub.page and json.loads(known.read_text()) == others
     stub.run("--only", "spin-50")
     assert stub.calls("looks") and stub.kept("spin-50")["solver"] == records["spin-50"]["solver"]
+    (stub.out / "cases" / "spin-200.json").write_text(json.dumps({**records["spin-200"], "command": ["old"]}))
+    known.write_text(json.dumps(records))
+    stub.calls()
+    assert "kept" in stub.run("--only", "spin-200") and stub.calls() == []  # not hidden by an older one
     stub.answer({"0,0,0.08": {"status": 1}})
     stub.run("--only", "spin-200", "--fresh")
     stub.run("--page")
-    assert "spin-200" not in json.loads(known.read_text())
+    assert "spin-200" not in json.loads(known.read_text()) and "spin-50" in json.loads(known.read_text())
+    known.write_text("[]")
+    stub.run("--list")
 
 
 def test_the_solver_is_another_when_its_code_changes(lib, tmp_path):
