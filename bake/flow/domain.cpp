@@ -441,8 +441,8 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     }
     plan.steps = d.start_steps - d.first_step + std::uint64_t{d.interval_steps} * d.samples + 1;
     plan.updates = static_cast<double>(finest_steps_of_cells) * static_cast<double>(plan.steps);
-    // Two copies of the populations, what is kept at borders, a flag a finest cell, and some two hundred bytes for each cell of the body's
-    // surface.
+    // Two copies of the populations, what is kept at borders, a flag a finest cell, and some two hundred bytes for each
+    // cell of the body's surface.
     const double wetted =
         c.section ? 4 * (size.x + size.y) / plan.cell * d.finest().nz : measure(surface).area / (plan.cell * plan.cell);
     plan.bytes = bytes + d.finest().allocated() + static_cast<std::uint64_t>(wetted * 5 * 200);

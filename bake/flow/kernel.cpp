@@ -5,7 +5,8 @@
 #include "bake/flow/collision.h"
 #include "bake/flow/vectors.h"
 
-// This file needs -fno-math-errno: without it gcc calls the library for std::sqrt and does not vectorise (8 times slower).
+// This file needs -fno-math-errno: without it gcc calls the library for std::sqrt and does not vectorise (8 times
+// slower).
 namespace frm::bake::flow {
 namespace {
 
@@ -39,8 +40,8 @@ struct Chunk {
     alignas(64) float rate[chunk];  // of relaxation
 };
 
-/// The cells that come after these: a processor follows fewer streams than the 38 of a row by itself. 1.1 to 1.4 times the
-/// rate on a Zen 4 core; with what is read only 1.05 times less of that, and into the first cache it was 0.75 times.
+/// The cells that come after these: a processor follows fewer streams than the 38 of a row by itself (docs/flow.md,
+/// "Speed").
 FRM_FLOW_INLINE void ask_for_row(const float* const* cells, std::size_t first, std::size_t size) {
     for (int i = 0; i < direction_count; ++i) {
         for (std::size_t x = 0; x < size; x += Grid::lanes) ask_for_later(cells[i] + first + x);
@@ -49,8 +50,8 @@ FRM_FLOW_INLINE void ask_for_row(const float* const* cells, std::size_t first, s
 
 /// `relaxation(x)`: the molecular time of the chunk's cell x.
 template <typename Relaxation>
-FRM_FLOW_INLINE void read(const float* const* from, std::size_t first, std::size_t size, const Relaxation& relaxation,
-                          float model, Chunk& c) {
+FRM_FLOW_INLINE void read_moments(const float* const* from, std::size_t first, std::size_t size,
+                                  const Relaxation& relaxation, float model, Chunk& c) {
     FRM_FLOW_INDEPENDENT
     for (std::size_t x = 0; x < size; ++x) {
         const Moments m = moments_of([&](int i) { return from[i][first + x]; });
@@ -73,7 +74,8 @@ FRM_FLOW_INLINE void read(const float* const* from, std::size_t first, std::size
 }
 
 /// Cells begin to end of the chunk, as cell `first` of `out` and on.
-FRM_FLOW_INLINE void keep(const Chunk& c, std::size_t begin, std::size_t end, float* const* out, std::size_t first) {
+FRM_FLOW_INLINE void copy_fields(const Chunk& c, std::size_t begin, std::size_t end, float* const* out,
+                                 std::size_t first) {
     FRM_FLOW_INDEPENDENT
     for (std::size_t x = begin; x < end; ++x) {
         out[0][first + x - begin] = c.excess[x];
@@ -102,12 +104,12 @@ FRM_FLOW_INLINE void collide_cells(const Pull& in, const Push& out, std::size_t 
         const std::size_t size = count - first < chunk ? count - first : chunk;
         ask_for_row(in.from, first + size, size);
         ask_for_row(to, first + size, size);
-        read(
+        read_moments(
             in.from, first, size, [&](std::size_t x) { return relaxation[first + x]; }, 18 * smagorinsky, c);
         for (std::size_t n = 0; n < wanted.count; ++n) {
             const Wanted::Cells& cells = wanted.cells[n];
             const std::size_t begin = std::max(cells.begin, first), end = std::min(cells.end, first + size);
-            if (begin < end) keep(c, begin - first, end - first, cells.to.data(), begin - cells.begin);
+            if (begin < end) copy_fields(c, begin - first, end - first, cells.to.data(), begin - cells.begin);
         }
         FRM_FLOW_INDEPENDENT
         for (std::size_t x = 0; x < size; ++x) {
@@ -146,9 +148,9 @@ void observe_cells(const Pull& in, std::size_t count, float relaxation, float sm
     Chunk c;
     for (std::size_t first = 0; first < count; first += chunk) {
         const std::size_t size = count - first < chunk ? count - first : chunk;
-        read(
+        read_moments(
             in.from, first, size, [&](std::size_t) { return relaxation; }, 18 * smagorinsky, c);
-        keep(c, 0, size, out, first);
+        copy_fields(c, 0, size, out, first);
     }
 }
 

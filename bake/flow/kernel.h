@@ -28,7 +28,7 @@ struct Wanted {
         std::size_t begin, end;
         Fields to;  ///< of cell `begin`
     };
-    static constexpr std::size_t most = 12;
+    static constexpr std::size_t most = 12;  ///< one for each face of two borders
 
     std::array<Cells, most> cells;
     std::size_t count = 0;

@@ -1,6 +1,6 @@
 // How loops over rows of cells become vector instructions: a row is one loop over contiguous floats, the compiler
-// vectorises it for each instruction set below, and the machine picks at start-up. All of them give the same bits, because
-// -ffp-contract=off keeps the fused instructions out.
+// vectorises it for each instruction set below, and the machine picks at start-up. All of them give the same bits,
+// because -ffp-contract=off keeps the fused instructions out.
 #pragma once
 
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__)
