@@ -231,8 +231,9 @@ CASES = [
     Case("plate-1", "plate_1",          10000,  40,   12,  30, [drag(7, aim=5)], note="2 cells thick"),
     Case("plate-5", "plate_5",          10000,  46,   10,  20, [drag(7, aim=5)], note="2 cells thick"),
     Case("box-8-1-30", "box_8_1_30",    20000,  32,   12,  60, [drag(7, aim=5)], note="2 cells thick"),
-    # With 36 cells it takes half an hour more and sheds at 0.14 to 0.155; the drag is the same (docs/flow.md).
     Case("section-5", "section_5",      10000,  24,   40,  60, [drag(10), strouhal(10)], **SLAB),
+    # The mode of 24 cells goes, the drag stays, and what the run says of itself is no longer enough (docs/flow.md).
+    Case("section-5-at-36", "section_5", 10000, 36,   60, 100, [drag(10), strouhal(10)], **SLAB),
     Case("section-0.2", "section_0.2",  10000,  36,   60, 120, [drag(10), strouhal(10)], **SLAB, note="7 cells thick"),
     Case("spin-50", "sphere",           50,     32,   30,  10, TORQUE, **SPIN),
     Case("spin-200", "sphere",          200,    32,   30,  10, TORQUE, **SPIN, **QUICK),
