@@ -42,13 +42,13 @@ Preset preset(Quality quality) {
         case Quality::high:
             return {4, 4, 0, 36, 20, 40, kHighRegionError, {0.03, 0.08}, 10, 66};
         default:
-            return {3, 6, 30, 24, 20, 16, kStandardRegionError, {0.06, 0.15}, 8, 38};
+            return {3, 3, 0, 24, 20, 16, kStandardRegionError, {0.06, 0.15}, 8, 38};
     }
 }
 
 constexpr double most_record = 2.5;         ///< times as long as a period and the overlap
 constexpr double harmonics_per_length = 2;  ///< kept: shedding is at 0.1 to 0.2 a length, so ten of its harmonics
-constexpr double most_more = 1.5;           ///< directions added at most, as a share of those of the least frequency
+constexpr double most_more = 1.5;           ///< directions added at most, as a share of the first ones
 constexpr std::uint32_t round_size = 4;     ///< directions added at a time
 // Carried over to other regions by a symmetry, a flow's forces must be known on parts that are smaller than these.
 constexpr std::uint32_t patches_per_region = 4, triangles_per_patch = 5, most_patches = 1000;
@@ -206,10 +206,9 @@ BakePlan plan_bake(const BakeOptions& options) {
     choose_patches(plan);
 
     std::vector<Vec3d> first = distinct_directions(plan.symmetry, frequency);
-    const double more_at_most = most_more * static_cast<double>(first.size());
     while (!options.directions && frequency < p.most_frequency) {
         std::vector<Vec3d> more = distinct_directions(plan.symmetry, frequency + 1);
-        if (more.size() > p.flows || more.size() == first.size()) break;
+        if (more.size() > p.flows) break;
         first = std::move(more);
         ++frequency;
     }
@@ -238,7 +237,7 @@ BakePlan plan_bake(const BakeOptions& options) {
 
     plan.spacing = spacing_of(frequency);
     if (!options.directions) plan.budget = p.budget;
-    plan.most_directions = static_cast<std::uint32_t>(std::ceil(static_cast<double>(first.size()) + more_at_most));
+    plan.most_directions = static_cast<std::uint32_t>(std::ceil((1 + most_more) * static_cast<double>(first.size())));
     for (std::size_t k = 0; k < plan.speeds.size(); ++k)
         for (const Vec3d& e : first) add_stream(plan, e, plan.speeds[k]);
     if (options.spin) add_spins(plan, shape);
