@@ -16,6 +16,16 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double sway_y = 0.05, sway_z = 0.03;  // of the stream's speed
 constexpr float soundest = 0.3f;
 
+/// Borders pass velocities as they are in the middle of a step.
+void to_middle(const Turning& turning, float y, const Wanted& wanted) {
+    if (!turning.on()) return;
+    for (std::size_t n = 0; n < wanted.count; ++n) {
+        const Wanted::Cells& cells = wanted.cells[n];
+        flow::to_middle(turning, {static_cast<float>(cells.begin), y, 1, 0}, cells.end - cells.begin, cells.to[1],
+                        cells.to[2]);
+    }
+}
+
 }  // namespace
 
 Nest::Nest(const Domain& domain, std::vector<SolidRun> solid, Wall& wall, int threads)
@@ -202,8 +212,8 @@ void Nest::bulk(std::size_t l) {
             }
             collide_row(grid, *level.from, *level.to, r, collision, wanted);
         }
-        if (l > 0) refinements_[l - 1].keep_coarse(r, turns);
-        if (ends_pair) refinements_[l].keep_fine(r, turns);
+        to_middle(turns, static_cast<float>(grid.row_y(r)), wanted);
+        if (ends_pair) refinements_[l].keep_fine(r);
         if (l == 0) empty_solid(r);
         if (!outermost) return;
         if (turns_frame) {
@@ -245,7 +255,7 @@ std::size_t Nest::read_node(std::size_t l, const std::array<int, 3>& at, const F
             static_cast<float>(domain_.relaxation(static_cast<int>(l))), smagorinsky, out);
     if (domain_.turning) {
         const Line here{static_cast<float>(at[0]), static_cast<float>(at[1]), 0, 0};
-        to_middle(turning_before(l), here, 1, out[1], out[2]);
+        flow::to_middle(turning_before(l), here, 1, out[1], out[2]);
     }
     return l;
 }
@@ -361,7 +371,7 @@ void Nest::set(const Source& source) {
                               level.grid.row_z(r), cells.end - cells.begin,
                               static_cast<float>(domain_.relaxation(static_cast<int>(l))), smagorinsky, cells.to);
             }
-            refinements_[l - 1].keep_coarse(r, turns);
+            to_middle(turns, static_cast<float>(level.grid.row_y(r)), wanted);
         }
         refinements_[l - 1].turn();
     }

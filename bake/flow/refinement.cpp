@@ -198,19 +198,6 @@ void Refinement::want_coarse(std::size_t row, Wanted& wanted) {
     }
 }
 
-void Refinement::keep_coarse(std::size_t row, const Turning& turning) {
-    if (!turning.on()) return;
-    const int j = coarse_.row_y(row), k = coarse_.row_z(row);
-    for (Face& face : faces_) {
-        if (!face.holds(j, k)) continue;
-        const int v = (face.axis == 2 ? j : k) - face.v_first, u = face.axis == 0 ? j - face.u_first : 0;
-        const int first = face.axis == 0 ? face.coarse : face.u_first;
-        to_middle(turning, {static_cast<float>(first), static_cast<float>(j), 1, 0},
-                  static_cast<std::size_t>(face.axis == 0 ? 1 : face.nu), face.row(newest_, 1, v) + u,
-                  face.row(newest_, 2, v) + u);
-    }
-}
-
 void Refinement::want_fine(std::size_t row, Wanted& wanted) {
     const int j = fine_.row_y(row), k = fine_.row_z(row);
     for (Face& face : faces_) {
@@ -230,25 +217,15 @@ void Refinement::want_fine(std::size_t row, Wanted& wanted) {
     }
 }
 
-void Refinement::keep_fine(std::size_t row, const Turning& turning) {
+void Refinement::keep_fine(std::size_t row) {
     const int j = fine_.row_y(row), k = fine_.row_z(row);
     for (Face& face : faces_) {
-        if (face.axis == 0) {
-            float* const cells = edge(face.high);
-            if (turning.on()) {
-                to_middle(turning, {static_cast<float>(face.fine_ring - reach), static_cast<float>(j), 1, 0}, planes,
-                          cells + planes, cells + 2 * planes);
-            }
-            for (int f = 0; f < field_count; ++f) {
-                const float* const c = cells + f * planes;
-                face.kept_row(0, f, k)[j] = filtered(c[0], c[1], c[2], c[3], c[4]);
-            }
-            continue;
+        if (face.axis != 0) continue;
+        const float* const cells = edge(face.high);
+        for (int f = 0; f < field_count; ++f) {
+            const float* const c = cells + f * planes;
+            face.kept_row(0, f, k)[j] = filtered(c[0], c[1], c[2], c[3], c[4]);
         }
-        const int plane = turning.on() ? face.plane_of(j, k) : -1, v = face.axis == 1 ? k : j;
-        if (plane < 0) continue;
-        to_middle(turning, {0, static_cast<float>(j), 1, 0}, face.kept_count(), face.kept_row(plane, 1, v),
-                  face.kept_row(plane, 2, v));
     }
 }
 

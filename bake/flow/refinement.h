@@ -29,13 +29,12 @@ public:
     // of the step and the block that is read or written; in a frame that turns, velocities pass as they are in the
     // middle of a step, because a step's force is not the same in both blocks.
 
-    /// What is kept of a row while it collides, and what is left to do with it afterwards. Reading the rows once more for
-    /// it took a fifth of a run. The coarse planes of each step:
+    /// What is kept of a row while it collides; the caller brings its velocities to the middle of the step. Reading the
+    /// rows once more for it took a fifth of a run. The coarse planes of each step:
     void want_coarse(std::size_t row, Wanted& wanted);
-    void keep_coarse(std::size_t row, const Turning& turning);
-    /// The fine nodes next inside the planes and those around them, of the second step of two:
+    /// The fine nodes next inside the planes and those around them, of the second step of two; then keep_fine:
     void want_fine(std::size_t row, Wanted& wanted);
-    void keep_fine(std::size_t row, const Turning& turning);
+    void keep_fine(std::size_t row);
 
     /// Before the next coarse step: what was new is old.
     void turn() { newest_ = 1 - newest_; }
