@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <memory>
 
 #include "core/kernels/kernels.h"
 
@@ -52,13 +51,11 @@ std::ptrdiff_t plane_for(std::int32_t ny, std::ptrdiff_t stride) {
 Field::Field(const FieldDef& def, std::pmr::memory_resource* memory)
     : def_(def),
       stride_(stride_for(def.nx)),
-      memory_(static_cast<std::size_t>(3 * plane_for(def.ny, stride_) + 3 * vector), 0.0f, memory),
-      keep_(static_cast<std::size_t>(2 * keep_room + 2 * (2 * keep_room + 2 * vector) + vector), 1.0f, memory),
+      memory_(static_cast<std::size_t>(3 * plane_for(def.ny, stride_) + 2 * vector), 0.0f, memory),
+      keep_(static_cast<std::size_t>(2 * keep_room + 2 * (2 * keep_room + 2 * vector)), 1.0f, memory),
       tiles_(def.nx, def.ny, def.skip_calm_tiles, memory) {
-    void* begin = memory_.data();
-    std::size_t room = memory_.size() * sizeof(float);
     const std::ptrdiff_t plane = plane_for(def.ny, stride_);
-    height_ = static_cast<float*>(std::align(64, 64, begin, room)) + stride_ + vector;
+    height_ = memory_.data() + stride_ + vector;
     u_ = height_ + plane;
     v_ = u_ + plane;
 
@@ -67,9 +64,7 @@ Field::Field(const FieldDef& def, std::pmr::memory_resource* memory)
     damp_.left = (width + vector - 1) / vector * vector;
     damp_.right_at = (def.nx - width) / vector * vector;
     damp_.right = (def.nx + vector) / vector * vector - damp_.right_at;
-    begin = keep_.data() + 2 * keep_room;
-    room = keep_.size() * sizeof(float);
-    ends_ = static_cast<float*>(std::align(64, 64, begin, room));
+    ends_ = keep_.data() + 2 * keep_room;
     damp_.cells_left = ends_;
     damp_.faces_left = ends_ + keep_room;
     damp_.cells_right = damp_.faces_left + keep_room;

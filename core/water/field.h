@@ -9,6 +9,7 @@
 
 #include "core/kernels/kernels.h"
 #include "core/math/hash.h"
+#include "core/water/aligned_floats.h"
 #include "core/water/calm_tiles.h"
 #include "core/water/rect.h"
 
@@ -140,10 +141,10 @@ private:
 
     FieldDef def_;
     std::ptrdiff_t stride_;
-    std::pmr::vector<float> memory_;
+    AlignedFloats memory_;
     float *height_, *u_, *v_;  ///< row 0, column 0; v_ also has rows -1 and ny + 1
     /// What the absorbing layer keeps in a step: of cells and of faces, from the border inwards; then damp_'s.
-    std::pmr::vector<float> keep_;
+    AlignedFloats keep_;
     WaveDamp damp_{};
     float* ends_;          ///< where damp_ points to, to be filled
     float keeps_for_ = 0;  ///< the dt of keep_ times the waves' speed, m

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <memory_resource>
-#include <vector>
 
 #include "core/math/vec.h"
+#include "core/water/aligned_floats.h"
 #include "core/water/field.h"
 #include "core/water/pyramid.h"
 #include "core/water/surface_view.h"
@@ -103,7 +103,7 @@ private:
     double volume_ = 0;                  ///< of all the thickness before
     double first_volume_ = 0;            ///< of the first tick, which was not put into the water
     Pyramid thickness_, pressure_;
-    std::pmr::vector<float> thickness_before_;
+    AlignedFloats thickness_before_;
 };
 
 }  // namespace frm

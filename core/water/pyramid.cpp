@@ -23,8 +23,8 @@ Pyramid::Pyramid(std::int32_t size, int levels, std::pmr::memory_resource* memor
     for (int k = 0; k < levels_; ++k) {
         Grid& grid = grid_[static_cast<std::size_t>(k)];
         grid.size = size >> k;
-        // Coarse rows go on to whole eights and have an empty one between them, for gather().
-        grid.stride = k == 0 ? grid.size : (grid.size + 7) / 8 * 8 + 8;
+        // Coarse rows go on to whole eights and have an empty one between them, for gather(); all begin on cache lines.
+        grid.stride = k == 0 ? grid.size : ((grid.size + 7) / 8 * 8 + 8 + 15) / 16 * 16;
         grid.value.assign(static_cast<std::size_t>(grid.size * grid.stride), 0.0f);
     }
 }
@@ -91,7 +91,7 @@ void Pyramid::gather() {
     wet.i1 = (wet.i1 + 15) / 16 * 16;
 }
 
-void Pyramid::swap_finest(std::pmr::vector<float>& values, Rect& wet) {
+void Pyramid::swap_finest(AlignedFloats& values, Rect& wet) {
     std::swap(grid_[0].value, values);
     std::swap(grid_[0].wet, wet);
 }

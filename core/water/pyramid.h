@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
-#include <vector>
 
+#include "core/water/aligned_floats.h"
 #include "core/water/field.h"
 
 namespace frm {
@@ -47,7 +47,7 @@ public:
     float* row(std::int32_t j) { return data() + static_cast<std::ptrdiff_t>(j) * size(); }
     const float* row(std::int32_t j) const { return data() + static_cast<std::ptrdiff_t>(j) * size(); }
     /// Changes the finest grid for another of the same size.
-    void swap_finest(std::pmr::vector<float>& values, Rect& wet);
+    void swap_finest(AlignedFloats& values, Rect& wet);
 
 private:
     struct Grid {
@@ -55,7 +55,7 @@ private:
         float* row(std::int32_t j) { return value.data() + j * stride; }
         const float* row(std::int32_t j) const { return value.data() + j * stride; }
 
-        std::pmr::vector<float> value;
+        AlignedFloats value;
         std::int32_t size = 0;
         std::ptrdiff_t stride = 0;
         Rect wet;
