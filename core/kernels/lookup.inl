@@ -170,6 +170,7 @@ FRM_INLINE void find_rows(const LookupTable& map, const LookupMotion& m, const L
         for (int k = 0; k < 3; ++k) {
             b.swing_row[k][s] = sample + around.index[k] * sources * series;
             fetch(b.swing_row[k][s]);
+            fetch(b.swing_row[k][s] + 1);  // every fourth begins a line of its own
         }
     }
 }
