@@ -4,6 +4,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import subprocess
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 MESHES = ROOT / "samples" / "meshes"
+# A shell without job control starts what runs in the background deaf to Ctrl-C, and so would be all that is started here.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 PROGRAM = os.environ.get("FRM_PROGRAM", str(ROOT / "build" / "release" / "frm"))
 
 
