@@ -6,8 +6,8 @@ Body::Body(const BodyDef& d, std::uint32_t number, std::pmr::memory_resource* me
     : def(d),
       id(number),
       rotation(d.pose.rotation),
-      sources(d.map->sources.size(), SourceState(), memory),
-      streams(d.map->sources.size(), memory) {}
+      streams(d.map->sources.size(), memory),
+      sources(d.map->sources.size(), SourceState(), memory) {}
 
 Vec3f Body::centre() const { return def.map->clusters.centre * def.scale; }
 

@@ -83,16 +83,22 @@ enum class Wetness : std::uint8_t { unknown, dry, partly, whole };
 struct Body {
     Body(const BodyDef& def, std::uint32_t id, std::pmr::memory_resource* memory);
 
+    // What a tick looks at of a body far from the water lies together: of a thousand it waits for the cache.
     BodyDef def;
-    std::uint32_t id;  ///< counts the bodies of a world in the order of creation
+    std::uint32_t id;          ///< counts the bodies of a world in the order of creation
+    bool stays_dry = false;    ///< nothing of it is looked at in this tick but its weight (FRM_SKIP_DRY_BODIES)
+    bool pushes = true;        ///< it is near enough to the surface to push it
+    bool water_finite = true;  ///< the surface around it is a finite number
+    Wetness wetness = Wetness::unknown;  ///< what the sources and the buoyancy were last set to
     Rotation<float> rotation;
+    Forces forces;
+
+    SourceStreams streams;  ///< of the last tick
     std::pmr::vector<SourceState> sources;
-    SourceStreams streams;                   ///< of the last tick
     std::optional<Footprint> footprint;      ///< while the world has water
     std::optional<VolumeElements> elements;  ///< while it has a footprint: what is laid into it
     std::optional<WaveAccount> account;      ///< while it has a footprint: of the energy that goes by it
 
-    Forces forces;
     float displaced_volume = 0, wet_area = 0, relative_speed = 0;
     std::uint32_t wet_sources = 0, clipped_triangles = 0;
     /// Sources of the last tick whose friction or fluctuation was left out (core/skip.h).
@@ -105,19 +111,15 @@ struct Body {
         float error = 0;           ///< N, the bound on what that costs
         bool over_budget = false;  ///< the time did not suffice for the error
     } detail;
-    float map_time_owed = 0;   ///< s, to all wet sources, of ticks that looked up groups
-    Budget budget;             ///< of this tick
-    bool stays_dry = false;    ///< nothing of it is looked at in this tick but its weight (FRM_SKIP_DRY_BODIES)
-    bool pushes = true;        ///< it is near enough to the surface to push it
-    bool water_finite = true;  ///< the surface around it is a finite number
+    float map_time_owed = 0;  ///< s, to all wet sources, of ticks that looked up groups
+    Budget budget;            ///< of this tick
     float wet_height = 0;  ///< of the wet surface's centroid above the origin, m, as if the surface over it were calm
-    Wetness wetness = Wetness::unknown;  ///< what the sources and the buoyancy were last set to
+    bool by_one_evaluation = false;  ///< the wet surface of the last tick
 
     Vec3d laid_at;  ///< the pose that the footprint's thickness belongs to
     Rotation<float> laid_rotation;
 
     bool all_wet() const { return wetness == Wetness::whole; }
-    bool by_one_evaluation = false;  ///< the wet surface of the last tick
     /// Centre and radius of a sphere around the surface, body frame, scaled.
     Vec3f centre() const;
     float radius() const;

@@ -19,8 +19,8 @@ static float slices_above(float w, float c, float inverse, float finest, float w
 /// What sixteen elements of a body, `depth` (of the body's centre) below the calm surface, lay on a level: the wet part of
 /// each's column, in shares of the element's volume times that; and, at the widest level, what it leaves to all of the
 /// water. An element stands for a column as high as it is thick: h = sqrt(sum (up_k)^2 spread_k).
-static void slice_elements(const ElementBlock* block, const SliceLevel* level, float depth, float ux, float uy, float uz,
-                           float* __restrict laid, float* __restrict left) {
+static void slice_elements(const ElementBlock* block, const SliceLevel* level, float depth, float ux, float uy,
+                           float uz, float* __restrict laid, float* __restrict left) {
     const float c = level->cell, inverse = 1.0f / c, width = level->width;
     const float finest = level->finest, widest = level->widest, spread = level->spread;
     const float* spread_x = block->spread[0];
@@ -32,12 +32,12 @@ static void slice_elements(const ElementBlock* block, const SliceLevel* level, f
     const float* volume = block->volume;
     FRM_EACH_LANE
     for (std::size_t k = 0; k < kernel_lanes; ++k) {
-        const float square =
-            ux * ux * spread_x[k] + uy * uy * spread_y[k] + uz * uz * spread_z[k];
+        const float square = ux * ux * spread_x[k] + uy * uy * spread_y[k] + uz * uz * spread_z[k];
         const float half = width * sqrtf(square > 0 ? square : 0.0f), h = half > 0.02f ? half : 0.02f;
         const float middle = width * (depth - (ux * at_x[k] + uy * at_y[k] + uz * at_z[k]));
         const float high = middle - h > 0 ? middle - h : 0.0f, low = middle + h > 0 ? middle + h : 0.0f;
-        const float taken = slices_above(low, c, inverse, finest, widest) - slices_above(high, c, inverse, finest, widest);
+        const float taken =
+            slices_above(low, c, inverse, finest, widest) - slices_above(high, c, inverse, finest, widest);
         const float per = volume[k] / (2.0f * h), wet = low - high;
         laid[k] = per * (spread * taken + (1.0f - spread) * wet);
         const float beyond = (low > c ? low - c : 0.0f) - (high > c ? high - c : 0.0f);

@@ -22,19 +22,22 @@ typedef int LaneNumbers __attribute__((vector_size(4 * FRM_LANES), may_alias));
     __builtin_shufflevector(x, right, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16)
 #define FRM_FROM_RIGHT_2(x, right) \
     __builtin_shufflevector(x, right, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17)
-#define FRM_LANE_NUMBERS {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}
+#define FRM_LANE_NUMBERS \
+    { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 }
 #elif FRM_LANES == 8
 #define FRM_FROM_LEFT(left, x) __builtin_shufflevector(left, x, 7, 8, 9, 10, 11, 12, 13, 14)
 #define FRM_FROM_LEFT_2(left, x) __builtin_shufflevector(left, x, 6, 7, 8, 9, 10, 11, 12, 13)
 #define FRM_FROM_RIGHT(x, right) __builtin_shufflevector(x, right, 1, 2, 3, 4, 5, 6, 7, 8)
 #define FRM_FROM_RIGHT_2(x, right) __builtin_shufflevector(x, right, 2, 3, 4, 5, 6, 7, 8, 9)
-#define FRM_LANE_NUMBERS {0, 1, 2, 3, 4, 5, 6, 7}
+#define FRM_LANE_NUMBERS \
+    { 0, 1, 2, 3, 4, 5, 6, 7 }
 #else
 #define FRM_FROM_LEFT(left, x) __builtin_shufflevector(left, x, 3, 4, 5, 6)
 #define FRM_FROM_LEFT_2(left, x) __builtin_shufflevector(left, x, 2, 3, 4, 5)
 #define FRM_FROM_RIGHT(x, right) __builtin_shufflevector(x, right, 1, 2, 3, 4)
 #define FRM_FROM_RIGHT_2(x, right) __builtin_shufflevector(x, right, 2, 3, 4, 5)
-#define FRM_LANE_NUMBERS {0, 1, 2, 3}
+#define FRM_LANE_NUMBERS \
+    { 0, 1, 2, 3 }
 #endif
 
 typedef int NumbersAnywhere __attribute__((vector_size(4 * FRM_LANES), may_alias, aligned(4)));

@@ -50,8 +50,8 @@ static inline void step_row(const WaveRows& r, const RowEnd& end, float* const h
 
 // The same at fourth order: differences (27 d1 - d3) / 24, whose two weights are in f1, f3 and g1, g3.
 template <bool moves_above>
-static inline void step_row_4(const WaveRows& r, float* const h, float* const u, float* const v,
-                              const float* height_3, float f1, float f3, float g1, float g3) {
+static inline void step_row_4(const WaveRows& r, float* const h, float* const u, float* const v, const float* height_3,
+                              float f1, float f3, float g1, float g3) {
     const float *const height_1 = h + r.stride, *const height_2 = height_1 + r.stride;
     const float *const v_below = v - r.stride, *const v_above = v + r.stride;
     float* const v_above_2 = v + 2 * r.stride;
@@ -96,8 +96,8 @@ static inline void step_row_4(const WaveRows& r, float* const h, float* const u,
             store(v_above_2 + i, cells < FRM_LANES ? first_lanes(above, cells) : above);
         }
         const Lanes near = (FRM_FROM_RIGHT(face, next_face) - face) + (near_above - below);
-        const Lanes far = (FRM_FROM_RIGHT_2(face, next_face) - FRM_FROM_LEFT(face_before, face)) +
-                          (above - load(v_below + i));
+        const Lanes far =
+            (FRM_FROM_RIGHT_2(face, next_face) - FRM_FROM_LEFT(face_before, face)) + (above - load(v_below + i));
         const Lanes now = height - (g1 * near - g3 * far);
         store(h + i, cells < FRM_LANES ? first_lanes(now, cells) : now);
     };
@@ -123,8 +123,7 @@ static void wave_faces(float* __restrict v, const float* __restrict h, const flo
 
 static void wave_faces_4(float* __restrict v, const float* __restrict h, const float* __restrict below,
                          const float* above, const float* below_2, std::ptrdiff_t count, float f1, float f3) {
-    for (std::ptrdiff_t i = 0; i < count; ++i)
-        v[i] -= f1 * (h[i] - below[i]) - f3 * (above[i] - below_2[i]);
+    for (std::ptrdiff_t i = 0; i < count; ++i) v[i] -= f1 * (h[i] - below[i]) - f3 * (above[i] - below_2[i]);
 }
 
 static void wave_outflow(float* __restrict v, const float* __restrict h, std::ptrdiff_t count, float factor) {

@@ -92,18 +92,16 @@ static void measure_clusters(const ClusterBlock* block, const BodyLevel* level, 
         state[k] = wet ? cluster_wet : dry ? cluster_dry : cluster_cut;
         const float keep = wet ? 1.0f : 0.0f, b = wet ? at : 0.0f;
         const float x = wet ? sx : 0.0f, y = wet ? sy : 0.0f, z = wet ? sz : 0.0f;
-        force[k] += (b * moment[k] + x * moment[6 * n + k]) +
-                          (y * moment[12 * n + k] + z * moment[18 * n + k]);
-        force[n + k] += (b * moment[n + k] + x * moment[7 * n + k]) +
-                          (y * moment[13 * n + k] + z * moment[19 * n + k]);
-        force[2 * n + k] += (b * moment[2 * n + k] + x * moment[8 * n + k]) +
-                          (y * moment[14 * n + k] + z * moment[20 * n + k]);
-        torque[k] += (b * moment[3 * n + k] + x * moment[9 * n + k]) +
-                          (y * moment[15 * n + k] + z * moment[21 * n + k]);
-        torque[n + k] += (b * moment[4 * n + k] + x * moment[10 * n + k]) +
-                          (y * moment[16 * n + k] + z * moment[22 * n + k]);
-        torque[2 * n + k] += (b * moment[5 * n + k] + x * moment[11 * n + k]) +
-                          (y * moment[17 * n + k] + z * moment[23 * n + k]);
+        force[k] += (b * moment[k] + x * moment[6 * n + k]) + (y * moment[12 * n + k] + z * moment[18 * n + k]);
+        force[n + k] += (b * moment[n + k] + x * moment[7 * n + k]) + (y * moment[13 * n + k] + z * moment[19 * n + k]);
+        force[2 * n + k] +=
+            (b * moment[2 * n + k] + x * moment[8 * n + k]) + (y * moment[14 * n + k] + z * moment[20 * n + k]);
+        torque[k] +=
+            (b * moment[3 * n + k] + x * moment[9 * n + k]) + (y * moment[15 * n + k] + z * moment[21 * n + k]);
+        torque[n + k] +=
+            (b * moment[4 * n + k] + x * moment[10 * n + k]) + (y * moment[16 * n + k] + z * moment[22 * n + k]);
+        torque[2 * n + k] +=
+            (b * moment[5 * n + k] + x * moment[11 * n + k]) + (y * moment[17 * n + k] + z * moment[23 * n + k]);
         sum_area[k] += keep * area[k];
         sum_depth[k] += b * area[k];
     }

@@ -97,6 +97,7 @@ Body& World::create_body(const BodyDef& def, std::uint32_t id) {
 }
 
 void World::give_footprint(Body& body) {
+    body.stays_dry = false;
     const float cell = water_->def().field.cell, scale = body.def.scale;
     const double volume = body.def.map->shape.volume * static_cast<double>(scale * scale * scale);
     body.footprint.emplace(water_->def().field, body.radius(), volume, memory_);
@@ -212,8 +213,8 @@ World::WaveTime World::time_waves(float dt) const {
 // drives the body by k dt v. With it in time, a host's v += dt F / m, x += dt v is one symplectic step of body and water.
 void World::place_body(Body& body, float dt, float half_step) {
     // What was dry without a wave of its own stays so: its forces are as they were, but for its weight.
-    const bool settled =
-        body.wetness == Wetness::dry && (!body.footprint || (!body.footprint->first && !body.footprint->active()));
+    const bool settled = body.wetness == Wetness::dry &&
+                         (body.stays_dry || !body.footprint || (!body.footprint->first && !body.footprint->active()));
     body.stays_dry = settled && def_.skip & skip_dry_bodies && cannot_be_wet(body);
     if (!body.footprint || body.stays_dry) return;
     const bool spread = (def_.model & model_displacement) != 0;
