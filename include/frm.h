@@ -390,10 +390,11 @@ FRM_API frm_status FRM_CALL frm_world_destroy(frm_world world);
 
 /* Advances the world by dt seconds, 1e-6 to 0.1: buoyancy (Eqs. 1, 4, 5), resistance (Eq. 6), waves (Eqs. 7 to 10),
  * for all bodies in the order of their creation, with the poses and twists last set. The forces are those at the
- * poses given. FRM_ERROR_DIVERGED: the tick was done, but a force was not a finite number (waves far beyond what
- * linear theory bears); all forces on that body are zero for this tick, and the water has been made calm. Any other
- * error: nothing has changed. Waves are linear: heights are not limited by the depth. [realtime], see
- * frm_recorder_create */
+ * poses given. Ticks may differ in length: the water then takes steps of one length, as many as fit into a tick, and
+ * bodies feel it as if it had gone on by what is left. FRM_ERROR_DIVERGED: the tick was done, but a force, or a height
+ * of the water (looked at every eight steps), was not a finite number (waves far beyond what linear theory bears); all
+ * forces on that body are zero for this tick, and the water has been made calm. Any other error: nothing has changed.
+ * Waves are linear: heights are not limited by the depth. [realtime], see frm_recorder_create */
 FRM_API frm_status FRM_CALL frm_world_tick(frm_world world, float dt);
 
 /* Counters. [realtime] */
@@ -457,8 +458,8 @@ FRM_API frm_status FRM_CALL frm_water_destroy(frm_water water);
 /* The water's size, as made. [owner] */
 FRM_API frm_status FRM_CALL frm_water_get_def(frm_water water, frm_water_def *def);
 
-/* The field as of its last step (with FRM_SKIP_WAVE_STEPS up to 5 ms ago; time says). FRM_ERROR_CAPACITY if
- * capacity < nx * ny while an array is not null. [realtime] */
+/* The field as of its last step (time says when: with FRM_SKIP_WAVE_STEPS up to 5 ms ago, and a step of the waves where
+ * ticks differ in length). FRM_ERROR_CAPACITY if capacity < nx * ny while an array is not null. [realtime] */
 FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *state);
 
 /* The newest snapshot, while another thread ticks: as frm_water_read, made every snapshot_interval of the world's time
@@ -477,7 +478,7 @@ FRM_API frm_status FRM_CALL frm_water_set_height(frm_water water, const float *h
 FRM_API frm_status FRM_CALL frm_water_set_pressure(frm_water water, const float *pressure, uint64_t count);
 
 /* Height of the surface (m, in the world, level included) at a position on the first and second horizontal axis, no
- * lower than the bed; the calm level outside. [realtime] */
+ * lower than the bed; the calm level outside. Of the field as frm_water_read has it. [realtime] */
 FRM_API frm_status FRM_CALL frm_water_get_height(frm_water water, double x, double y, double *height);
 
 /* ---- Body ----------------------------------------------------------------------------------------------------- */

@@ -131,6 +131,7 @@ frm_status FRM_CALL frm_body_get_state(frm_body body, frm_body_state* state) {
 frm_status FRM_CALL frm_body_get_coefficients(frm_body body, frm_coefficients* coefficients) {
     return with<BodyObject>(body, [&](Context& c, BodyObject& object) {
         require_out(coefficients, "coefficients");
+        require_not_served(object.world);
         const Coefficients found = coefficients_of(object.body, object.world.world.def().fluid);
         const auto added_mass = c.axes().matrix_out(found.added_mass), damping = c.axes().matrix_out(found.damping);
         frm_coefficients out{};

@@ -35,8 +35,8 @@ HeightGrid heights_of(const SurfaceView& surface, const Under& under) {
         const Rect& c = under.cells;
         const std::int32_t x = (c.i1 - c.i0) / 4 + 2, y = (c.j1 - c.j0) / 4 + 2;
         const Rect around{c.i0 - x, c.j0 - y, c.i1 + x, c.j1 + y};
-        if (surface.steps <= 1 ||
-            !field.mean_heights(around, surface.step, surface.gravity, surface.steps, *surface.room, surface.scratch))
+        if (surface.steps <= 1 || !field.mean_heights(around, surface.step, surface.gravity, surface.steps,
+                                                      surface.later, *surface.room, surface.scratch))
             field.heights_ahead(around, surface.rise, surface.bend, surface.scratch);
         heights = surface.scratch;
     }

@@ -120,10 +120,11 @@ void Field::heights_ahead(const Rect& cells, float rise, float bend, float* out)
     }
 }
 
-bool Field::mean_heights(const Rect& cells, float dt, float gravity, std::uint32_t steps, Room& room,
+bool Field::mean_heights(const Rect& cells, float dt, float gravity, std::uint32_t steps, float later, Room& room,
                          float* out) const {
     // What happens further away than a cell a step does not get here in time; the faces around stay as they are.
-    const auto reach = static_cast<std::int32_t>(std::min(steps, 1u << 16));
+    const std::uint32_t looks = steps + (later > 0 ? 1 : 0);
+    const auto reach = static_cast<std::int32_t>(std::min(looks, 1u << 16));
     const Rect wanted = cells.clipped(def_.nx, def_.ny);
     if (wanted.empty()) return true;
     const Rect r =
@@ -140,9 +141,13 @@ bool Field::mean_heights(const Rect& cells, float dt, float gravity, std::uint32
     }
     const std::int32_t width = wanted.i1 - wanted.i0, left = wanted.i0 - r.i0;
     const float slope = dt * gravity / def_.cell, divergence = dt * def_.depth / def_.cell;
-    for (std::int32_t j = wanted.j0; j < wanted.j1; ++j)
-        std::copy_n(height_row(j) + wanted.i0, width, out + j * stride_ + wanted.i0);
-    for (std::uint32_t n = 1; n < steps; ++n) {
+    // Between two steps in a straight line: of the first less than of the others, and of one more the rest.
+    for (std::int32_t j = wanted.j0; j < wanted.j1; ++j) {
+        const float* const h = height_row(j) + wanted.i0;
+        float* const sum = out + j * stride_ + wanted.i0;
+        for (std::int32_t i = 0; i < width; ++i) sum[i] = (1 - later) * h[i];
+    }
+    for (std::uint32_t n = 1; n < looks; ++n) {
         for (std::int32_t j = 0; j < ny; ++j) {
             const float *const h = row(room.height, j), *const below = h - stride;
             float *const u = row(room.u, j), *const v = row(room.v, j);
@@ -155,10 +160,11 @@ bool Field::mean_heights(const Rect& cells, float dt, float gravity, std::uint32
             const float *const u = row(room.u, j), *const v = row(room.v, j), *const above = v + stride;
             for (std::int32_t i = 0; i < nx; ++i) h[i] -= divergence * ((u[i + 1] - u[i]) + (above[i] - v[i]));
         }
+        const float weight = n < steps ? 1.0f : later;
         for (std::int32_t j = wanted.j0; j < wanted.j1; ++j) {
             float* const sum = out + j * stride_ + wanted.i0;
             const float* const h = row(room.height, j - r.j0) + left;
-            for (std::int32_t i = 0; i < width; ++i) sum[i] += h[i];
+            for (std::int32_t i = 0; i < width; ++i) sum[i] += weight * h[i];
         }
     }
     const float share = 1 / static_cast<float>(steps);
@@ -206,6 +212,7 @@ void Field::start_from_rest(float dt, float gravity) {
 void Field::calm() {
     std::fill(memory_.begin(), memory_.end(), 0.0f);
     high_ = false;
+    finite_ = true;
     level_ = mean_set_ = 0;
     tiles_.sleep_all();
 }

@@ -82,8 +82,8 @@ public:
     /// half a step ago.
     void heights_ahead(const Rect& cells, float rise, float bend, float* out) const;
 
-    /// The mean of some cells' heights over the beginnings of the next `steps` steps of `dt`, without pushes; as
-    /// heights_ahead. False, and nothing done, where that takes more than `room` can hold.
+    /// The mean of some cells' heights over the beginnings of the next `steps` steps of `dt`, or `later` of a step after
+    /// each (0 to 1), without pushes; as heights_ahead. False, and nothing done, where that takes more than `room` can hold.
     struct Room {
         static constexpr std::int64_t cells = 256 * 256;  ///< at most; water of fewer has room for all of them
         Room(const FieldDef& def, std::pmr::memory_resource* memory)
@@ -93,7 +93,8 @@ public:
         }
         std::pmr::vector<float> height, u, v;
     };
-    bool mean_heights(const Rect& cells, float dt, float gravity, std::uint32_t steps, Room& room, float* out) const;
+    bool mean_heights(const Rect& cells, float dt, float gravity, std::uint32_t steps, float later, Room& room,
+                      float* out) const;
 
     /// Floats from one row to the next, in each of the arrays.
     std::ptrdiff_t stride() const { return stride_; }
@@ -110,6 +111,8 @@ public:
     void wake(const Rect& cells) { tiles_.wake(cells); }
     /// Somewhere the water stands higher than it is deep: looked at every eight steps.
     bool has_high_waves() const { return high_; }
+    /// As looked at then.
+    bool is_finite() const { return finite_; }
     /// All is at rest in these cells.
     bool rests(const Rect& cells) const { return tiles_.rest(cells); }
     /// Cells that a step goes through.
@@ -152,7 +155,7 @@ private:
     std::size_t together_from_ = std::size_t{1} << 21;
     double level_ = 0, mean_set_ = 0;
     std::uint32_t steps_unseen_ = 0;
-    bool high_ = false;
+    bool high_ = false, finite_ = true;
 };
 
 /// Moves the contents of an nx by ny array by whole cells, zero where nothing was; `stride` floats a row.

@@ -21,6 +21,7 @@ struct SurfaceView {
     /// Where the tick takes several steps: their number, and length, s. Heights are the mean of those that they begin with.
     std::uint32_t steps = 1;
     float step = 0, gravity = 0;
+    float later = 0;           ///< and by so much of a step later
     float* scratch = nullptr;  ///< as large as the field's heights
     Field::Room* room = nullptr;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/math/floating_point.h"
 
@@ -321,12 +322,16 @@ void Field::look_for_high_waves(std::uint32_t steps) {
     steps_unseen_ += steps;
     if (steps_unseen_ < CalmTiles::interval) return;
     steps_unseen_ = 0;
-    high_ = false;
-    const float limit = def_.depth - std::fabs(level());
-    for (const Block& block : tiles_.blocks())
-        for (const Span* s = block.begin; s != block.end && !high_; ++s)
-            high_ =
-                kernels().any_above(height_row(block.r0) + s->i0, stride_, block.r1 - block.r0, s->i1 - s->i0, limit);
+    const auto any_above = [&](float limit) {
+        for (const Block& block : tiles_.blocks())
+            for (const Span* s = block.begin; s != block.end; ++s)
+                if (kernels().any_above(height_row(block.r0) + s->i0, stride_, block.r1 - block.r0, s->i1 - s->i0,
+                                        limit))
+                    return true;
+        return false;
+    };
+    high_ = any_above(def_.depth - std::fabs(level()));
+    finite_ = !high_ || !any_above(std::numeric_limits<float>::max());
 }
 
 void Field::advance(float dt, float gravity, std::uint32_t steps, const Push* pushes, std::size_t push_count,

@@ -54,8 +54,7 @@ std::uint64_t World::hash() const {
     hash.value(def_.time_budget);
     hash.value(ticks_);
     hash.value(time_);
-    hash.value(behind_);
-    hash.value(last_step_);
+    clock_.hash(hash);
     if (water_) hash_water(hash, *water_);
     for (const auto& body : bodies_) hash_body(hash, *body);
     return hash.result();

@@ -40,7 +40,7 @@ Water& World::create_water(const WaterDef& def) {
     WaterDef with = def;
     with.field.skip_calm_tiles &= (def_.skip & skip_calm_water) != 0;
     water_ = std::allocate_shared<Water>(std::pmr::polymorphic_allocator<Water>(memory_), with, memory_);
-    behind_ = last_step_ = 0;
+    clock_.restart();
     try {
         for (const auto& body : bodies_) give_footprint(*body);
         if (observer_) observer_->water_created(*this);
@@ -65,19 +65,23 @@ void World::set_height(const float* height) {
         body->footprint->own.calm();
         body->account->clear();
     }
-    behind_ = last_step_ = 0;
+    clock_.restart();
     stepped_at_ = ticks_;
     water_->offer_snapshot(ticks_, time_);
     if (observer_) observer_->height_set(*this, height, water_->field.cells());
 }
 
+// Where the water waits, its next step is pushed by the new pressure for all of its time: what the old one pushed by then, and
+// the new one did not, is made up for at once.
 void World::set_pressure(const float* pressure) {
-    if (behind_ > 0) {  // with the pressure as it was
-        step_waves({behind_, 1, true});
-        last_step_ = behind_;
-        behind_ = 0;
-    }
+    const Rect all{0, 0, water_->field.def().nx, water_->field.def().ny};
+    const auto push = [&](float time) {
+        const float* const p = water_->pressure();
+        if (p && time != 0) water_->field.push({p, all.i1, all.j1, all, 0, 0, time / def_.fluid.density});
+    };
+    push(clock_.behind());
     water_->set_pressure(pressure);
+    push(-clock_.behind());
     if (observer_) observer_->pressure_set(*this, pressure, pressure ? water_->field.cells() : 0);
 }
 
@@ -145,37 +149,50 @@ bool World::rests_around(const Body& body, const SurfaceView& view) const {
     return water_->field.rests({i - reach, j - reach, i + reach, j + reach});
 }
 
-SurfaceView World::view_from(const Body& body, float dt, std::uint32_t steps) const {
+SurfaceView World::view_from(const Body& body, float dt, const WaveTime& waves) const {
     SurfaceView view;
     view.everywhere = def_.everywhere;
     view.level = static_cast<float>(def_.level - body.def.pose.position.z);
     if (water_) {
         const FieldDef& field = water_->def().field;
+        const float behind = clock_.behind(), last_step = clock_.last_step();
+        // Of equal steps those of a tick begin before it and end before its end: bodies feel the water as late as if they
+        // did not.
+        const bool equal = waves.equal > 0;
+        const float ahead = equal ? behind + 0.5f * std::max(dt - waves.step, 0.0f) : behind;
         view.field = &water_->field;
         view.origin = body.footprint->body();
         view.cells_per_metre = 1.0f / field.cell;
         view.fastest = std::sqrt(def_.fluid.gravity * field.depth);
-        view.ahead = behind_;
-        view.rise = behind_ * field.depth / field.cell;
-        view.bend =
-            0.5f * behind_ * (behind_ + last_step_) * def_.fluid.gravity * field.depth / (field.cell * field.cell);
-        // What the body lays now is in all `steps` of this tick, each of which pushes the water by it; so it feels the mean
+        view.waits = waves.steps == 0;
+        view.ahead = ahead;
+        view.rise = ahead * field.depth / field.cell;
+        view.bend = 0.5f * ahead * (ahead + last_step) * def_.fluid.gravity * field.depth / (field.cell * field.cell);
+        // What the body lays now is in all steps of this tick, each of which pushes the water by it; so it feels the mean
         // of the heights that those steps begin with, and body and water push each other alike.
-        if (steps > 1) {
-            const auto count = static_cast<float>(steps);
-            const float time = behind_ + dt, mean = 0.5f * time * (count - 1) / count,
-                        square = time * time * (count - 1) * (2 * count - 1) / (6 * count * count);
+        if (waves.steps > 1) {
+            const auto count = static_cast<float>(waves.steps);
+            const float time = waves.time;
+            float mean = 0.5f * time * (count - 1) / count,
+                  square = time * time * (count - 1) * (2 * count - 1) / (6 * count * count);
+            if (equal) {
+                const float later = std::clamp(ahead - mean, 0.0f, waves.step);
+                view.later = later / waves.step;
+                square += later * (2 * mean + later);
+                mean += later;
+            }
             view.ahead = mean;
             view.rise = mean * field.depth / field.cell;
             view.bend =
                 0.5f * (square + mean * time / count) * def_.fluid.gravity * field.depth / (field.cell * field.cell);
-            view.steps = steps;
+            view.steps = waves.steps;
             view.step = time / count;
             view.gravity = def_.fluid.gravity;
             view.room = &water_->room();
         }
         // The field's velocities are half a step older than its heights; where no tick waits, half a tick.
-        view.pull = std::max(0.0f, behind_ + 0.5f * (last_step_ - dt)) * def_.fluid.gravity / field.cell;
+        const float older = behind + 0.5f * (equal ? std::max(last_step - dt, 0.0f) : last_step - dt);
+        view.pull = std::max(0.0f, older) * def_.fluid.gravity / field.cell;
         view.scratch = water_->scratch();
         view.still = has_budget() && rests_around(body, view);
     }
@@ -191,27 +208,21 @@ bool World::cannot_be_wet(const Body& body) const {
     return low > static_cast<double>(water_->def().field.depth) && !water_->field.has_high_waves();
 }
 
-World::WaveTime World::time_waves(float dt) const {
+WaveTime World::time_waves(float dt) const {
     if (!water_) return {};
     const bool displaces = (def_.model & model_displacement) != 0;
     // Where the velocity is forced in each step, a step leaves u = U - dt g dh/dx, and heights diffuse with g d dt:
     // stable for a Courant number up to 1/2 only, and not 1 / sqrt(2).
     const float courant = displaces ? 1.0f : 0.70710678f;
     const float stable = courant * Field::stable_step(water_->def().field, def_.fluid.gravity);
-    const float time = behind_ + dt, needed = std::ceil(time / stable);
-    if (!(needed <= static_cast<float>(max_substeps)))
-        throw Error(FRM_ERROR_LIMIT,
-                    "dt = %g s needs %.0f wave steps, more than %u: take a smaller dt, larger cells or less depth",
-                    static_cast<double>(dt), static_cast<double>(needed), max_substeps);
-    if (def_.skip & skip_wave_steps && displaces && time + dt <= std::min(longest_wait * stable, longest_wait_time))
-        return {time, 0, true};
-    return {time, std::max(1u, static_cast<std::uint32_t>(needed)), behind_ > 0};
+    return clock_.plan(dt, {stable, std::min(longest_wait * stable, longest_wait_time),
+                            (def_.skip & skip_wave_steps) != 0 && displaces});
 }
 
 // A body's volume is in the water before any body feels the water, so that what a body feels of its own displacement is that
 // of its present pose. A tick late it would be a spring that pulls by where the body was, k (z - dt v) instead of k z: it
 // drives the body by k dt v. With it in time, a host's v += dt F / m, x += dt v is one symplectic step of body and water.
-void World::place_body(Body& body, float dt, float half_step) {
+void World::place_body(Body& body, float dt, const WaveTime& waves) {
     // What was dry without a wave of its own stays so: its forces are as they were, but for its weight.
     const bool settled = body.wetness == Wetness::dry &&
                          (body.stays_dry || !body.footprint || (!body.footprint->first && !body.footprint->active()));
@@ -233,25 +244,27 @@ void World::place_body(Body& body, float dt, float half_step) {
         lay_displacement(body, level, spread, (def_.skip & skip_still_bodies) != 0);
     body.footprint->keep_over_water(share_over_water(body, at));
     if (spread) {
+        const float behind = clock_.behind();
         if (!deep)
             charge_displacement(body, water_->field, origin, level, def_.fluid.density * def_.fluid.gravity, dt,
-                                half_step, water_->scratch());
-        displace_water(*body.footprint, water_->field, behind_ * def_.fluid.gravity);
+                                0.5f * waves.time / static_cast<float>(std::max(1u, waves.steps)) - behind,
+                                water_->scratch());
+        // It was displaced in the middle of this tick, on average; a step takes it for displaced half of itself before.
+        const float late = behind + 0.5f * std::max(waves.step - dt, 0.0f);
+        displace_water(*body.footprint, water_->field, late * def_.fluid.gravity);
     }
     skipped_.still_bodies += body.footprint->kept();
     skipped_.deep_bodies += deep;
 }
 
-void World::tick_body(Body& body, float dt, float time_budget, std::uint32_t steps) {
-    const bool water_waits = water_ && steps == 0;
+void World::tick_body(Body& body, float dt, float time_budget, const WaveTime& waves) {
     if (body.stays_dry) {
         ++skipped_.dry_bodies;
         body.streams.rotation = body.rotation;
         sum_forces(body, def_.fluid);
         return;
     }
-    SurfaceView view = view_from(body, dt, steps);
-    view.waits = water_waits;
+    const SurfaceView view = view_from(body, dt, waves);
     measure_wet_surface(body, view, def_.fluid, def_.skip);
     body.budget = {def_.error_budget, time_budget};
     look_up_resistance(body, view, def_.fluid, dt, def_.model, def_.skip);
@@ -273,18 +286,19 @@ bool World::tick(float dt) {
 
     bool diverged = false;
     skipped_ = {0, 0, 0, 0, 0, skipped_.water_waits + waits};
-    const float half_step = 0.5f * waves.time / static_cast<float>(std::max(1u, waves.steps)) - behind_;
-    for (const auto& body : bodies_) place_body(*body, dt, half_step);
+    for (const auto& body : bodies_) place_body(*body, dt, waves);
     for (const auto& body : bodies_) {
-        tick_body(*body, dt, time_each, waves.steps);
+        tick_body(*body, dt, time_each, waves);
         if (!body->water_finite || !finite(body->forces)) {
             forget_forces(*body);
             diverged = true;
         }
     }
-    behind_ = waits ? waves.time : 0.0f;
-    if (!waits && water_) last_step_ = waves.waited ? waves.time / static_cast<float>(waves.steps) : 0.0f;
-    if (water_) move_water(waves);
+    if (water_) {
+        clock_.advance(dt, waves);
+        move_water(waves);
+        diverged = diverged || !water_->field.is_finite();
+    }
     if (diverged && water_) calm_water();
 
     ++ticks_;
@@ -293,7 +307,7 @@ bool World::tick(float dt) {
     const bool offers = waits || substeps_ > 0 || ticks_ == 1;
     substeps_ = waves.steps;
     if (!waits) stepped_at_ = ticks_;
-    if (water_ && offers) water_->offer_snapshot(stepped_at_, time_ - static_cast<double>(behind_));
+    if (water_ && offers) water_->offer_snapshot(stepped_at_, time_ - static_cast<double>(clock_.behind()));
     if (observer_) observer_->ticked(*this, dt);
     return !diverged;
 }

@@ -9,6 +9,7 @@
 #include "core/body/body.h"
 #include "core/skip.h"
 #include "core/water/water.h"
+#include "core/world/wave_clock.h"
 
 namespace frm {
 
@@ -53,7 +54,7 @@ public:
     };
     const Skipped& skipped() const { return skipped_; }
     /// How long ago the water was as its field is, s.
-    float water_behind() const { return behind_; }
+    float water_behind() const { return clock_.behind(); }
     /// ticks() when it became so.
     std::uint64_t water_stepped_at() const { return stepped_at_; }
     std::uint32_t bodies_created() const { return next_body_; }
@@ -75,27 +76,21 @@ public:
     /// Throws Error (FRM_ERROR_LIMIT), with nothing changed, if the waves would need more than max_substeps steps. False
     /// if a force was not finite: that body's forces are zero then, and the water is calm.
     bool tick(float dt);
-    static constexpr std::uint32_t max_substeps = 1024;
+    static constexpr std::uint32_t max_substeps = WaveClock::max_substeps;
 
     std::uint64_t hash() const;
     void observe(WorldObserver* observer) { observer_ = observer; }
     WorldObserver* observer() const { return observer_; }
 
 private:
-    /// How the water goes on in a tick: `steps` of it over all the time that it is behind; 0 steps, it waits.
-    struct WaveTime {
-        float time = 0;
-        std::uint32_t steps = 0;
-        bool waited = false;  ///< in ticks before
-    };
     WaveTime time_waves(float dt) const;
-    SurfaceView view_from(const Body& body, float dt, std::uint32_t steps) const;
+    SurfaceView view_from(const Body& body, float dt, const WaveTime& waves) const;
     bool has_budget() const { return def_.error_budget > 0 || def_.time_budget > 0; }
     float share_over_water(const Body& body, const GridOrigin& centre) const;
     bool rests_around(const Body& body, const SurfaceView& view) const;
     bool cannot_be_wet(const Body& body) const;
-    void place_body(Body& body, float dt, float half_step);
-    void tick_body(Body& body, float dt, float time_budget, std::uint32_t steps);
+    void place_body(Body& body, float dt, const WaveTime& waves);
+    void tick_body(Body& body, float dt, float time_budget, const WaveTime& waves);
     void give_footprint(Body& body);
     static void take_footprint(Body& body);
     void move_water(const WaveTime& waves);
@@ -111,7 +106,7 @@ private:
     WorldObserver* observer_ = nullptr;
     std::uint64_t ticks_ = 0, stepped_at_ = 0;
     double time_ = 0;
-    float behind_ = 0, last_step_ = 0;  ///< s
+    WaveClock clock_;
     Skipped skipped_;
     std::uint32_t substeps_ = 0, next_body_ = 0;
 };

@@ -120,6 +120,9 @@ TEST_CASE("a servo closes the loop, and others read it meanwhile", "[servo]") {
     forces.struct_size = sizeof forces;
     CHECK(frm_body_get_forces(scene.body, &forces) == FRM_ERROR_STATE);
     CHECK(scene.lib.error().find("servo") != std::string::npos);
+    frm_coefficients coefficients{};
+    coefficients.struct_size = sizeof coefficients;
+    CHECK(frm_body_get_coefficients(scene.body, &coefficients) == FRM_ERROR_STATE);
     CHECK(frm_world_tick(scene.world, 0.001f) == FRM_ERROR_STATE);
     CHECK(frm_device_stop(scene.device) == FRM_ERROR_STATE);
     std::uint32_t size = 0;

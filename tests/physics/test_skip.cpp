@@ -3,6 +3,7 @@
 // test_coupling.cpp.)
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tests/support/catch.h"
@@ -137,6 +138,77 @@ TEST_CASE("water that waits for a longer step moves bodies as if it did not", "[
         CHECK(resistance < 0.005 * strongest);
         CHECK(rough < 3 * largest * 34.8 / 2 * static_cast<double>(dt));  // no stairs: as fast as the waves themselves
     }
+}
+
+TEST_CASE("what a moving body displaces while the water waits pushes it as if it did not wait", "[skip]") {
+    World on = test::world_of(skipping(skip_default)), off = test::world_of(skipping(skip_default & ~skip_wave_steps));
+    Body* bodies[2];
+    for (World* world : {&on, &off}) {
+        world->create_water(test::water_of(128, 0.025f, 0.5f));
+        bodies[world == &off] = &world->create_body(body_of(plate_map(), {0, 0, -0.05}));
+    }
+    double apart = 0, largest = 0;
+    for (int t = 0; t < 2500; ++t) {  // broadside, 5 cm to each side, without its push
+        const Pose pose{{0.05 * std::sin(31.4159 * 0.0002 * t), 0, -0.05}, {}};
+        for (int k = 0; k < 2; ++k) {
+            (k ? off : on).set_motion(*bodies[k], pose, {});
+            (k ? off : on).tick(0.0002f);
+        }
+        if (t < 500) continue;
+        const float a = bodies[0]->forces.buoyancy.force.x, b = bodies[1]->forces.buoyancy.force.x;
+        apart = std::max(apart, static_cast<double>(std::fabs(a - b)));
+        largest = std::max(largest, static_cast<double>(std::fabs(b)));
+    }
+    INFO("off by " << apart << " of " << largest << " N");
+    CHECK(on.skipped().water_waits > 2000);
+    CHECK(largest > 1);
+    CHECK(apart < 0.02 * largest);  // 0.1 of it while a whole step's time pushed it, not a half
+}
+
+TEST_CASE("a pressure that is set again, or while the water waits, counts for its own time", "[skip]") {
+    // Ticks of 0.2 ms; in `often` the pressure is set before each, as it was.
+    World once = test::world_of(skipping(skip_default)), often = test::world_of(skipping(skip_default));
+    std::vector<float> p(64 * 64);
+    for (std::int32_t j = 28; j < 36; ++j)
+        for (std::int32_t i = 28; i < 36; ++i) p[static_cast<std::size_t>(64 * j + i)] = 20;
+    Body* bodies[2];
+    for (World* world : {&once, &often}) {
+        world->create_water(test::water_of(64, 0.025f, 0.5f));
+        bodies[world == &often] = &world->create_body(body_of(plate_map(), {0, 0, -0.05}));
+        world->set_pressure(p.data());
+    }
+    float apart = 0, highest = 0;
+    for (int t = 0; t < 2000; ++t) {
+        const Pose pose{{0.0001 * t, 0, -0.05}, test::turned({0, 1, 0}, 0.3)};
+        for (int k = 0; k < 2; ++k) {
+            World& world = k ? often : once;
+            world.set_motion(*bodies[k], pose, {{0.5f, 0, 0}, {}});
+            if (k) world.set_pressure(p.data());
+            world.tick(0.0002f);
+        }
+    }
+    for (std::int32_t j = 0; j < 64; ++j)
+        for (std::int32_t i = 0; i < 64; ++i) {
+            const float a = once.water()->field.height_row(j)[i], b = often.water()->field.height_row(j)[i];
+            apart = std::max(apart, std::fabs(a - b));
+            highest = std::max(highest, std::fabs(a));
+        }
+    INFO("heights apart by " << apart << " of " << highest);
+    CHECK(once.skipped().water_waits > 1500);
+    CHECK(apart < 1e-4f * highest);
+    CHECK(length(force(*bodies[0]) - force(*bodies[1])) < 1e-4 * length(force(*bodies[0])));
+}
+
+TEST_CASE("water that is no longer finite is made calm, and the tick says so, without a body too", "[waves]") {
+    World world = test::world_of();
+    Water& water = world.create_water(test::water_of(32, 0.025f, 0.5f));
+    water.field.wake({16, 16, 17, 17});
+    water.field.height_row(16)[16] = std::numeric_limits<float>::infinity();
+    bool diverged = false;
+    for (int t = 0; t < 8 && !diverged; ++t) diverged = !world.tick(0.005f);
+    CHECK(diverged);
+    CHECK(water.field.height_row(16)[16] == 0);
+    CHECK(world.tick(0.005f));
 }
 
 TEST_CASE("a body too deep to be seen at the surface does not push it", "[skip]") {
