@@ -29,6 +29,19 @@ static void go(Scene *scene, frm_world world, const frm_body *bodies, unsigned f
     see_world(scene, world);
 }
 
+/* Ticks of 1 to 17 ms, as a game's frames come: steps of the water that they share, and what is left over. */
+static void go_unevenly(Scene *scene, frm_world world, const frm_body *bodies, double time) {
+    unsigned t, b;
+    for (t = 0; t < 60; ++t) {
+        const float dt = 0.001f * (float)(1 + 7 * t % 17);
+        time += (double)dt;
+        for (b = 0; b < body_count; ++b) place(scene, bodies[b], &paths[b], time);
+        MUST(scene, frm_world_tick(world, dt));
+        for (b = 0; b < body_count; ++b) see_body(scene, bodies[b]);
+    }
+    see_world(scene, world);
+}
+
 static void see_height(Scene *scene, frm_water water, double x, double y) {
     double height = 0;
     MUST(scene, frm_water_get_height(water, x, y, &height));
@@ -48,6 +61,7 @@ static void waves(Scene *scene, uint32_t nx, uint32_t ny, uint32_t border) {
         see_water(scene, water, 1);
         go(scene, world, bodies, 160, 260, 0.004f);
         see_water(scene, water, 0);
+        go_unevenly(scene, world, bodies, 260 * 0.004);
         see_water(scene, water, 1);
         see_height(scene, water, 0.031, -0.017);
         see_height(scene, water, 50, 50);
