@@ -311,7 +311,8 @@ typedef enum frm_skip {
     /* The fluctuation of sources that hardly fluctuate, their mean alone: below 2e-6 of the largest force. */
     FRM_SKIP_STEADY = 2,
     /* All but the weight of a body that hangs higher above the calm surface than the water is deep (while no wave is as
-     * high), and whose own waves have died down. Exact. */
+     * high), and whose own waves have died down. Exact, but for the eight steps
+     * that it takes to see a wave that a body throws up higher than that. */
     FRM_SKIP_DRY_BODIES = 4,
     /* The walk over the surface of a body that is wholly under calm water: one evaluation by its moments. 1e-5 of the
      * weight of the water that it displaces. */
