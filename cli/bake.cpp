@@ -56,7 +56,7 @@ void clear(bake::Store& store, const std::string& root, bool keep) {
     std::error_code error;
     std::size_t others = 0;
     for (fs::directory_iterator entry(root, error), end; !error && entry != end; entry.increment(error))
-        others += entry->path() != fs::path(store.folder()) ? 1 : 0;
+        others += fs::exists(entry->path() / "plan.json") && entry->path() != fs::path(store.folder()) ? 1 : 0;
     if (others)
         print_note(root + " has flows of " + std::to_string(others) + " unfinished bake" + (others == 1 ? "" : "s") +
                    " with other options; remove it if they are not wanted");
@@ -73,10 +73,10 @@ double to_do(const bake::Store& store, const bake::BakePlan& plan) {
 void run(Options& o) {
     bake::BakeOptions& options = o.arguments.bake;
     std::vector<std::string> outputs = BakePage::files(o.report);
-    outputs.insert(outputs.end(), {o.out, o.raw});
+    outputs.insert(outputs.end(), {o.out, o.raw, o.report, o.work.empty() ? o.out + ".work" : o.work});
     require_distinct(outputs, {options.mesh});
     require_map_place(o.out, o.named, o.force);
-    if (!o.raw.empty()) require_writable(o.raw);
+    require_raw_place(o.raw, o.force);
     settle_unit(o.arguments);
     bake::BakePlan plan = make_plan(o.arguments, o.out);
     const std::unique_ptr<BakePage> page = o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report);
@@ -142,9 +142,7 @@ void add_bake(CLI::App& app) {
                      ".frm, in the current folder, if there is none yet)")
         ->check(not_empty())
         ->type_name("FILE");
-    command->add_option("--raw", o.raw, "write the tables too as they were before rounding (frm verify --against)")
-        ->check(not_empty())
-        ->type_name("FILE");
+    add_raw_option(*command, o.raw);
     add_report_option(*command, o.report);
     command->add_flag("--force", o.force, "replace a file that is not a map, or was not named by -o");
     command->add_option("--work", o.work, "folder for unfinished work (default: OUT.work)")

@@ -165,15 +165,16 @@ void solve(SolveOptions& o) {
 // ---- merge -----------------------------------------------------------------------------------------------------
 
 struct MergeOptions {
-    std::string folder, out, report;
+    std::string folder, out, raw, report;
     bool force = false, json = false;
 };
 
 void merge(MergeOptions& o) {
     const bool named = !o.out.empty();
     std::vector<std::string> outputs = BakePage::files(o.report);
-    outputs.push_back(o.out);
+    outputs.insert(outputs.end(), {o.out, o.raw, o.report});
     require_distinct(outputs, {});
+    require_raw_place(o.raw, o.force);
     if (named) require_map_place(o.out, named, o.force);
     Folder folder = open_folder(o.folder);
     if (!named) {
@@ -197,6 +198,7 @@ void merge(MergeOptions& o) {
     const std::unique_ptr<BakePage> page = o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report);
     BakeRun done;
     done.json = o.json;
+    done.raw = o.raw;
     done.page = page.get();
     for (const bake::TaskResult& result : found.results) done.seconds += result.seconds;
     finish_map(folder.plan, found.results, o.out, done);
@@ -272,6 +274,7 @@ void add_merge(CLI::App& bake) {
                      "the map to write (default: the mesh's name, .frm, in the current folder, if\nthere is none yet)")
         ->check(not_empty())
         ->type_name("FILE");
+    add_raw_option(*command, o.raw);
     add_report_option(*command, o.report);
     command->add_flag("--force", o.force, "replace a file that is not a map, or was not named by -o");
     command->add_flag("--json", o.json, "JSON on standard output");

@@ -103,6 +103,7 @@ void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required) {
         .add_option("--speeds", a.bake.speeds,
                     "further ones, m/s, by commas: the map then follows the Reynolds number (docs/bake.md)")
         ->delimiter(',')
+        ->allow_extra_args(false)  // or the mesh would be one of them
         ->check(stream_speed_range())
         ->type_name("N,N,...");
     command.add_flag("--spin", a.bake.spin, "solve turns about three axes in still water too");

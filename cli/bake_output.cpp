@@ -18,12 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A map, by its first bytes; or a file without any, which is nobody's loss.
-bool is_map(const std::string& path) {
+/// By its first bytes; or a file without any, which is nobody's loss.
+template <typename Byte, std::size_t size>
+bool begins_with(const std::string& path, const Byte (&magic)[size]) {
     std::ifstream file(path, std::ios::binary);
-    char head[sizeof format::magic] = {};
-    file.read(head, sizeof head);
-    return file.gcount() == 0 || (file.gcount() == sizeof head && std::memcmp(head, format::magic, sizeof head) == 0);
+    char head[size] = {};
+    file.read(head, size);
+    return file.gcount() == 0 || (file.gcount() == size && std::memcmp(head, magic, size) == 0);
 }
 
 /// The notes and what is on standard output.
@@ -81,9 +82,23 @@ void require_map_place(const std::string& out, bool named, bool force) {
     std::error_code error;
     if (!force && fs::is_regular_file(out, error)) {
         if (!named) throw Failure(out + ": is already there; --force replaces it, or name another file with -o");
-        if (!is_map(out)) throw Failure(out + ": is there and is not a map; --force replaces it");
+        if (!begins_with(out, format::magic)) throw Failure(out + ": is there and is not a map; --force replaces it");
     }
     require_writable(out);
+}
+
+void require_raw_place(const std::string& raw, bool force) {
+    if (raw.empty()) return;
+    std::error_code error;
+    if (!force && fs::is_regular_file(raw, error) && !begins_with(raw, bake::raw_magic))
+        throw Failure("--raw: " + raw + ": is there and holds no raw tables; --force replaces it");
+    require_writable(raw);
+}
+
+void add_raw_option(CLI::App& command, std::string& raw) {
+    command.add_option("--raw", raw, "write the tables too as they were before rounding (frm verify --against)")
+        ->check(not_empty())
+        ->type_name("FILE");
 }
 
 std::string default_map(const std::string& mesh) { return fs::path(mesh).stem().string() + ".frm"; }
@@ -94,11 +109,12 @@ void finish_map(const bake::BakePlan& plan, const std::vector<bake::TaskResult>&
     bake::Tables tables;
     const std::unique_ptr<Map> map = bake::make_map(plan, results, report, &tables);
     const std::vector<std::uint8_t> file = encode_map(*map);
-    write_file(out, file.data(), file.size());
+    // The map last: while it is not there the same command goes on.
     if (!run.raw.empty()) {
         const std::vector<std::uint8_t> raw = bake::encode_raw(*map, tables);
         write_file(run.raw, raw.data(), raw.size());
     }
+    write_file(out, file.data(), file.size());
     before_words();
 
     say(plan, *map, report, out, file.size(), run);

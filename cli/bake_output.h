@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/bake.h"
+#include "cli/command.h"
 
 namespace frm::cli {
 
@@ -14,6 +15,10 @@ class BakePage;
 /// Throws Failure now if the map could not be written to `out` after hours. A file that is there is replaced if it is a
 /// map and was `named` by the user, or if `force` says so.
 void require_map_place(const std::string& out, bool named, bool force);
+
+/// The same of the unrounded tables, if they are asked for: a file that is there is replaced if it holds such, or by `force`.
+void require_raw_place(const std::string& raw, bool force);
+void add_raw_option(CLI::App& command, std::string& raw);
 
 /// NAME.frm in the current folder, for a mesh NAME.glb anywhere.
 std::string default_map(const std::string& mesh);

@@ -164,8 +164,8 @@ std::string ending_text(const Options& o, const bake::FlowSeries& flow, const Fl
 std::string uncertainty_text(const bake::FlowUncertainty& u) {
     char text[128], grid[32];
     std::snprintf(grid, sizeof grid, u.grid < 0 ? "not measured" : "%.1f %%", 100 * u.grid);
-    std::snprintf(text, sizeof text, "%.1f %% (grid %s, statistics %.1f %%, blockage %.1f %%)", 100 * u.total(), grid,
-                  100 * u.statistics, 100 * u.blockage);
+    std::snprintf(text, sizeof text, "%s%.1f %% (grid %s, statistics %.1f %%, blockage %.1f %%)",
+                  u.grid < 0 ? "at least " : "", 100 * u.total(), grid, 100 * u.statistics, 100 * u.blockage);
     return text;
 }
 
@@ -188,7 +188,7 @@ void print(std::FILE* to, const Options& o, const bake::FlowSeries& flow, const 
                  "Reynolds number %.4g (solved %.4g) on %.4g m; %llu cells, %llu steps, %.1f s, %.0f million cell "
                  "updates a second\n",
                  r.reynolds, r.reynolds_solved, r.length, static_cast<unsigned long long>(flow.plan.cells),
-                 static_cast<unsigned long long>(flow.plan.steps), flow.seconds, flow.mlups);
+                 static_cast<unsigned long long>(flow.steps), flow.seconds, flow.mlups);
 }
 
 void run(Options& o) {
@@ -208,15 +208,14 @@ void run(Options& o) {
     const FlowResults results = evaluate(surface, o.flow, flow, o.length);
     if (!o.out.empty()) write_file(o.out, csv_of(flow));
     const bool bare = o.out.empty() && o.report.empty() && !o.json;  // the series is all of standard output
+    // The report first: who reads standard output may be gone by then.
+    if (report) report->write({o.mesh, notes, o.flow}, flow, results);
     if (o.json) std::printf("%s\n", json_of(flow, results).dump(2).c_str());
     if (bare) std::printf("%s", csv_of(flow).c_str());
     if (!o.json) print(bare ? stderr : stdout, o, flow, results);
+    if (report && !o.json) std::printf("report in %s/report.html\n", o.report.c_str());
     std::fflush(stdout);
     std::fprintf(stderr, "%s", ending_text(o, flow, results).c_str());
-    if (report) {
-        report->write({o.mesh, notes, o.flow}, flow, results);
-        if (!o.json) std::printf("report in %s/report.html\n", o.report.c_str());
-    }
     if (flow.ending == bake::FlowEnding::cancelled) throw Unsuccessful();
 }
 

@@ -75,7 +75,8 @@ void FlowReport::write(const FlowSetting& setting, const bake::FlowSeries& flow,
     const std::string slices = slices_of(flow, j["report"]["slices"]);
     write_file(folder_.temporary() / slices_name, slices);
     write_file(folder_.temporary() / series_name, csv_of(flow));
-    write_file(folder_.temporary() / json_name, j.dump(2) + "\n");
+    write_file(folder_.temporary() / json_name,
+               j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     write_flow_page(folder_.temporary());
     folder_.publish();
 }

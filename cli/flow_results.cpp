@@ -169,7 +169,7 @@ nlohmann::ordered_json json_of(const bake::FlowSeries& flow, const FlowResults& 
         j["blocks"].push_back(
             {{"low", json_of(block.low)}, {"high", json_of(block.high)}, {"cell", block.cell}, {"cells", block.cells}});
     j["cells"] = plan.cells;
-    j["steps"] = plan.steps;
+    j["steps"] = flow.steps;
     j["mlups"] = flow.mlups;
     j["seconds"] = flow.seconds;
     return j;

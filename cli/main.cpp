@@ -1,6 +1,8 @@
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -23,6 +25,12 @@ void let_threads_sleep(int argc, char** argv) {
     const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();
     if (error || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
     execv(program.c_str(), argv);
+}
+
+/// Who read standard output needs no word of it.
+bool reader_is_gone() {
+    pollfd output{STDOUT_FILENO, POLLOUT, 0};
+    return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
 }
 
 void add_commands(CLI::App& app) {
@@ -52,6 +60,8 @@ void add_commands(CLI::App& app) {
 
 int main(int argc, char** argv) {
     let_threads_sleep(argc, argv);
+    // Who reads standard output may go (frm flow ... | head) before a report is written: what is left to do is done.
+    std::signal(SIGPIPE, SIG_IGN);
     CLI::App app{
         "frm - the force of water on moving rigid objects.\n\n"
         "  frm mesh paddle.glb                    is the mesh fit for it?\n"
@@ -65,8 +75,11 @@ int main(int argc, char** argv) {
     add_commands(app);
     try {
         app.parse(frm::cli::arguments_of(argc, argv));
-        if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return 0;
-        std::fprintf(stderr, "frm: standard output: %s\n", std::strerror(errno));
+        const bool written = std::fflush(stdout) == 0;
+        if (written && !std::ferror(stdout)) return 0;
+        if (!reader_is_gone())
+            std::fprintf(stderr, "frm: standard output: %s\n",
+                         written ? "was not written whole" : std::strerror(errno));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
         std::fprintf(stderr, "%s\n", frm::cli::usage_error(app, error).c_str());

@@ -52,7 +52,8 @@ ProgressBar::ProgressBar(std::string title)
       shown_(begin_),
       terminal_(isatty(STDERR_FILENO) != 0),
       old_interrupt_(watch(SIGINT)),
-      old_terminate_(watch(SIGTERM)) {}
+      old_terminate_(watch(SIGTERM)),
+      old_hang_up_(watch(SIGHUP)) {}
 
 void print_note(const std::string& text) {
     std::fprintf(stderr, "%snote: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text.c_str());
@@ -68,6 +69,7 @@ ProgressBar::~ProgressBar() {
     hide();
     std::signal(SIGINT, old_interrupt_);
     std::signal(SIGTERM, old_terminate_);
+    std::signal(SIGHUP, old_hang_up_);
 }
 
 double ProgressBar::elapsed() const { return seconds_between(begin_, Clock::now()); }

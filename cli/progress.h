@@ -32,12 +32,14 @@ private:
     bool terminal_, visible_ = false;
     void (*old_interrupt_)(int);
     void (*old_terminate_)(int);
+    void (*old_hang_up_)(int);
 };
 
 /// A line "note: ..." on standard error, also where a bar is shown.
 void print_note(const std::string& text);
 
-/// True once the user has pressed Ctrl-C, or the system asked for an end (SIGTERM), while there was a ProgressBar.
+/// True once the user has pressed Ctrl-C, or the system asked for an end (SIGTERM; SIGHUP, of a
+/// terminal that was closed), while there was a ProgressBar.
 bool interrupted();
 
 }  // namespace frm::cli

@@ -3,6 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -14,16 +17,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::string temporary_name = ".frm_report.tmp";  // and the process's number
+
+bool is_temporary(const fs::path& path) { return path.filename().string().rfind(temporary_name, 0) == 0; }
+
+/// What a process that was killed left there.
+void remove_left_over(const fs::path& folder) {
+    std::error_code ignored;
+    std::vector<fs::path> old;
+    for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
+        if (!is_temporary(entry->path())) continue;
+        const std::string name = entry->path().filename().string();
+        pid_t process = 0;
+        const char* const last = name.data() + name.size();
+        if (std::from_chars(name.data() + temporary_name.size(), last, process).ptr != last || process <= 0) continue;
+        if (kill(process, 0) != 0 && errno == ESRCH) old.push_back(entry->path());
+    }
+    for (const fs::path& path : old) fs::remove_all(path, ignored);
+}
+
 [[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
     throw Failure("--report: " + path.string() + ": " + error.message());
 }
 
 }  // namespace
 
-/// An empty folder, or a report of this kind and nothing else.
+/// An empty folder, or a report of this kind and nothing else; what other runs are at does not count.
 bool ReportFolder::may_be_replaced() const {
     bool empty = true;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+        if (is_temporary(entry.path())) continue;
         empty = false;
         if (std::count(kind_.files.begin(), kind_.files.end(), entry.path().filename().string()) == 0) return false;
     }
@@ -49,7 +72,8 @@ ReportFolder::ReportFolder(const std::string& folder, ReportKind kind) : kind_(s
     // the topmost folder that is not there yet, so that a run that fails leaves none.
     fs::path where = folder_;
     while (!fs::exists(where, error)) where = where.parent_path();
-    temporary_ = where / (".frm_report.tmp" + std::to_string(getpid()));
+    remove_left_over(where);
+    temporary_ = where / (temporary_name + std::to_string(getpid()));
     if (!fs::create_directory(temporary_, error)) {
         temporary_.clear();
         fail(folder, error ? error : std::make_error_code(std::errc::file_exists));

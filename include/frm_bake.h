@@ -112,7 +112,7 @@ typedef struct frm_bake_progress {
     float drag;           /* running mean drag coefficient of the flow named; 0 while it starts */
     float uncertainty;    /* its standard error, as a share; 0 while not known */
     char flow[64];        /* its name, such as "direction 0.71 0.00 -0.71"; empty while other processes have what is
-                             left */
+                             left, "making the map" after the last */
 } frm_bake_progress;
 
 /* The version of the library that runs. Each pointer may be null. [any] */
@@ -124,7 +124,7 @@ FRM_API frm_status FRM_CALL frm_bake_def_init(frm_bake_def *def, uint64_t size);
 /* Makes a bake, with nothing planned. At most 64 at a time (FRM_ERROR_LIMIT). [any] */
 FRM_API frm_status FRM_CALL frm_bake_create(frm_bake *bake);
 
-/* Cancels what runs, waits for its threads (a few tenths of a second) and frees everything but the work folder. Calling
+/* Cancels what runs, waits for its threads (as frm_bake_cancel) and frees everything but the work folder. Calling
  * it again is harmless and returns FRM_ERROR_HANDLE. No other call on this bake may be running. [owner] */
 FRM_API frm_status FRM_CALL frm_bake_destroy(frm_bake bake);
 
@@ -147,8 +147,9 @@ FRM_API frm_status FRM_CALL frm_bake_start(frm_bake bake);
 /* How it stands. Never waits for the work. [any] */
 FRM_API frm_status FRM_CALL frm_bake_get_progress(frm_bake bake, frm_bake_progress *progress);
 
-/* Asks the work to end; it does so within some tenths of a second. Flows that are finished stay in the work folder.
- * FRM_OK also if nothing runs. [any] */
+/* Asks the work to end; it does so within some tenths of a second, once it makes the map when that is made (some
+ * seconds; without added mass some tenths). Flows that are finished stay in the work folder. FRM_OK also if nothing
+ * runs. [any] */
 FRM_API frm_status FRM_CALL frm_bake_cancel(frm_bake bake);
 
 /* Waits for the work to end. FRM_OK: there is a map. FRM_ERROR_STATE: it was cancelled or never started. Else why it

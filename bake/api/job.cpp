@@ -134,8 +134,19 @@ void Job::run() {
             state_ = state;
             return !cancelled_;
         });
+        {
+            const std::lock_guard<std::mutex> lock(lock_);
+            state_.share = 1;
+            state_.seconds_left = -1;
+            state_.task = "making the map";
+        }
+        const auto go_on = [this] {
+            if (cancelled_) throw FlowCancelled("the bake was cancelled");
+        };
+        go_on();
         BakeReport report;
         const std::unique_ptr<Map> map = make_map(*plan_, results, report);
+        go_on();
         map_ = encode_map(*map);
         report_ = report_text(*plan_, *map, report);
         {

@@ -14,6 +14,8 @@
 namespace frm::bake::flow {
 namespace {
 
+constexpr double most_resolution = 512;
+
 // The stream's speed on the lattice. Lower costs steps and makes drag worse at a given resolution; higher is
 // compressible: the Mach number is 0.17 and the error of the force goes with its square.
 constexpr double lattice_speed = 0.1;
@@ -62,7 +64,7 @@ void check(const FlowCase& c) {
     require(!c.turning || (spins && c.speed == 0), "turning", "true", "false unless spin alone drives the flow");
     require(positive(c.viscosity, 1e-12, 1e6), "viscosity", number(c.viscosity), "from 1e-12 to 1e6 m^2/s");
     require(positive(c.density, 1e-6, 1e6), "density", number(c.density), "from 1e-6 to 1e6 kg/m^3");
-    require(positive(c.resolution, 4, 512), "resolution", number(c.resolution), "from 4 to 512");
+    require(positive(c.resolution, 4, most_resolution), "resolution", number(c.resolution), "from 4 to 512");
     require(c.reference_length == 0 || positive(c.reference_length, 1e-6, 1e6), "reference_length",
             number(c.reference_length), "0 (automatic) or from 1e-6 to 1e6 m");
     require(positive(c.start_up, 0.5, 1e4), "start_up", number(c.start_up), "from 0.5 to 10000 reference lengths");
@@ -286,11 +288,14 @@ std::string advice(const Surface& surface, const FlowCase& c, const Domain& d) {
     const auto say = [&](const std::string& more) { warning += (warning.empty() ? "" : "; ") + more; };
     const double thickness = measure_thickness(surface).thinnest;
     if (thickness < 1.99 * plan.cell) {
+        const double wanted = std::ceil(c.resolution * 2 * plan.cell / std::max(thickness, 1e-9));
         say("the body is " + number(thickness / plan.cell) +
             " cells thick where it is thinnest; below 2 the drag of thin parts is 10 to 15 % off face-on and up to "
             "twice as large edge-on: resolution " +
-            number(std::ceil(c.resolution * 2 * plan.cell / std::max(thickness, 1e-9))) + " would give 2");
+            (wanted > most_resolution ? "more than " + number(most_resolution) + " would be needed, which there is not"
+                                      : number(wanted) + " would give 2"));
     }
+    if (c.grid_error && !runs_coarse(c)) say("on under 8 cells what the grid does to the drag is not measured");
     const double span = plan.cell * d.finest().nz;
     if (c.slab > 0 && std::abs(span / plan.reference_length / c.slab - 1) > 0.05) {
         say("a slab of " + number(c.slab) + " reference lengths is solved as " + number(span / plan.reference_length) +

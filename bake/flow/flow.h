@@ -104,7 +104,7 @@ enum class FlowEnding { duration, confidence, seconds, cancelled };
 struct FlowSeries {
     FlowPlan plan;
     FlowEnding ending = FlowEnding::duration;
-    bool half = false;    ///< cancelled before the fine run began: all of this is of the run on half the resolution
+    bool half = false;    ///< ended before the fine run recorded: all of this is of the run on half the resolution
     double interval = 0;  ///< s
     std::uint32_t samples = 0;
     std::uint32_t regions = 0;
@@ -115,8 +115,9 @@ struct FlowSeries {
     double coarse_drag = 0;  ///< mean force along the stream (spin alone: torque along the axis) on half the
                              ///< resolution, N; 0 without `grid_error`
     std::vector<FlowSlice> slices;
-    double seconds = 0;  ///< wall time
-    double mlups = 0;    ///< million lattice cell updates a second
+    std::uint64_t steps = 0;  ///< that were done; fewer than planned where it ended early
+    double seconds = 0;       ///< wall time
+    double mlups = 0;         ///< million lattice cell updates a second
 };
 
 class FlowCancelled : public BakeError {

@@ -96,7 +96,7 @@ public:
             look();
             if (enough()) break;
         }
-        finish();
+        if (series_.samples > 0) finish();
         return std::move(series_);
     }
 
@@ -199,7 +199,7 @@ private:
             met_ = met;
         }
         if (case_.seconds > 0 && seconds_since(started_) > case_.seconds) {
-            if (measure_.empty()) {
+            if (measure_.empty() && before_updates_ == 0) {
                 throw BakeError(
                     "flow: the time given (seconds) ended while the flow was still starting; give more, or "
                     "lower resolution or start_up");
@@ -209,7 +209,7 @@ private:
         if (!progress_ || seconds_since(reported_) < progress_seconds) return false;
         reported_ = Clock::now();
         if (progress_(state())) return false;
-        if (measure_.empty()) throw FlowCancelled("flow: cancelled");
+        if (measure_.empty() && before_updates_ == 0) throw FlowCancelled("flow: cancelled");
         return end(FlowEnding::cancelled);
     }
 
@@ -277,6 +277,7 @@ private:
             }
             series_.slices = picture_->slices();
         }
+        series_.steps = nest_.step() - domain_.first_step;
         series_.seconds = seconds_since(started_);
         series_.mlups = domain_.plan.updates * share_done() / series_.seconds * 1e-6;
     }
@@ -332,6 +333,12 @@ FlowSeries solve_twice(const Surface& surface, const Regions& regions, const Dom
     if (domain.first_step > 0) run.start_from(*coarse);
     coarse.reset();
     FlowSeries series = run.solve();
+    if (series.samples == 0) {  // what is known is of the first run
+        first.half = true;
+        first.ending = series.ending;
+        first.seconds = seconds_since(started);
+        return first;
+    }
     series.coarse_drag = mean_quantity(first, c);
     const double fine = mean_quantity(series, c);
     if (fine != 0) {

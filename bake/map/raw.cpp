@@ -14,7 +14,6 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint8_t magic[8] = {0x89, 'F', 'R', 'W', '\r', '\n', 0x1A, '\n'};
 constexpr std::size_t header_bytes = 8 + 4 + 4 + 8 + 8;
 constexpr std::uint64_t max_raw_bytes = 4 * (Map::max_fluctuations + Map::max_means);
 
@@ -70,7 +69,7 @@ std::vector<std::uint8_t> encode_raw(const Map& map, const Tables& tables) {
     }
     Bytes file;
     ByteWriter<Bytes> head(file);
-    head.bytes(magic, sizeof magic);
+    head.bytes(raw_magic, sizeof raw_magic);
     head.u32(raw_format_version);
     head.u32(0);
     head.u64(identity(map));
@@ -82,7 +81,7 @@ std::vector<std::uint8_t> encode_raw(const Map& map, const Tables& tables) {
 
 Tables decode_raw(const std::uint8_t* data, std::size_t size, const Map& map) {
     ByteReader head(data, size, "raw tables");
-    if (size < header_bytes || std::memcmp(head.take(8), magic, 8) != 0)
+    if (size < header_bytes || std::memcmp(head.take(8), raw_magic, 8) != 0)
         corrupt("this is not a .frmraw file (its first bytes are not the format's)");
     if (const std::uint32_t version = head.u32(); version != raw_format_version)
         throw Error(FRM_ERROR_VERSION, "raw tables: format version %u; this program reads version %u", version,

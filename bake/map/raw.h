@@ -10,6 +10,7 @@
 namespace frm::bake {
 
 constexpr std::uint32_t raw_format_version = 1;
+constexpr std::uint8_t raw_magic[8] = {0x89, 'F', 'R', 'W', '\r', '\n', 0x1A, '\n'};  ///< its first bytes
 
 /// The file's bytes. `map` is the one that fill_tables() filled from the tables. Throws Error if their sizes do not match.
 std::vector<std::uint8_t> encode_raw(const Map& map, const Tables& tables);

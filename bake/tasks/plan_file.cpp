@@ -87,6 +87,11 @@ std::string plan_text(const BakePlan& plan, const std::string& fingerprint, std:
     return j.dump(2) + "\n";
 }
 
+bool is_somebody_elses(const std::string& text) {
+    const Json j = Json::parse(text, nullptr, false);
+    return !j.is_discarded() && !(j.is_object() && j.contains("format") && j["format"] == "frm bake plan");
+}
+
 PlanFile parse_plan(const std::string& text, const std::string& name) {
     PlanFile file;
     try {

@@ -21,6 +21,9 @@ std::string fingerprint_of(const BakePlan& plan);
 
 std::string plan_text(const BakePlan& plan, const std::string& fingerprint, std::size_t tasks);
 
+/// Sound JSON, but not a plan of frm bake: not ours to write over.
+bool is_somebody_elses(const std::string& text);
+
 /// Throws BakeError, beginning with `name`, where the text is not a plan, or is of a version with other options.
 PlanFile parse_plan(const std::string& text, const std::string& name);
 

@@ -18,7 +18,7 @@ using Bytes = std::vector<std::uint8_t>;
 using Writer = ByteWriter<Bytes>;
 
 constexpr std::uint8_t magic[8] = {0x89, 'F', 'L', 'O', 'W', '\r', '\n', 0x1A};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 constexpr const char* what = "the flow's file";
 
 // Bounds of what a file may claim, far above what a bake writes (some thousand samples, some hundred patches).
@@ -109,12 +109,12 @@ FlowSlice slice(ByteReader& r) {
 
 Bytes contents(const TaskResult& result) {
     const auto& [flow_plan, ending, half, interval, samples, regions, pressure, friction, torque, uncertainty,
-                 coarse_drag, slices, seconds, mlups] = result;
+                 coarse_drag, slices, steps, seconds, mlups] = result;
     const auto& [statistics, grid, blockage] = uncertainty;
     Bytes raw;
     Writer w(raw);
     put(w, flow_plan);
-    w.u8(static_cast<std::uint8_t>(ending)), w.u8(half ? 1 : 0), w.f64(interval);
+    w.u8(static_cast<std::uint8_t>(ending)), w.u8(half ? 1 : 0), w.f64(interval), w.u64(steps);
     for (const double v : {statistics, grid, blockage, coarse_drag, seconds, mlups}) w.f64(v);
     put(w, pressure), put(w, friction), put(w, torque);
     w.u32(static_cast<std::uint32_t>(slices.size()));
@@ -199,6 +199,7 @@ TaskResult decode_result(const std::uint8_t* data, std::size_t size, std::uint64
     result.ending = static_cast<FlowEnding>(ending);
     result.half = r.u8() != 0;
     result.interval = r.f64();
+    result.steps = r.u64();
     for (double* v : {&result.uncertainty.statistics, &result.uncertainty.grid, &result.uncertainty.blockage,
                       &result.coarse_drag, &result.seconds, &result.mlups})
         *v = r.f64();

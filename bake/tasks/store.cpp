@@ -48,8 +48,11 @@ Store::Store(std::string folder, const BakePlan& plan, Note note)
     const std::string path = folder_ + "/plan.json";
     std::vector<std::uint8_t> bytes;
     if (read_whole(path, most_plan, bytes)) {
+        const std::string text(bytes.begin(), bytes.end());
+        if (is_somebody_elses(text))
+            throw FileError(path + ": is there and is not a plan of frm bake; name another folder");
         try {
-            if (parse_plan(std::string(bytes.begin(), bytes.end()), path).fingerprint == fingerprint_) return;
+            if (parse_plan(text, path).fingerprint == fingerprint_) return;
         } catch (const BakeError&) {
             // Results name what they are of, so that a lost plan loses nothing.
             this->note(path + ": was damaged or of another version; it is written again");

@@ -80,6 +80,10 @@ def test_speeds(good, bake):
     assert force(several, 0.05) == pytest.approx(force(one, 0.05), rel=0.5)
 
 
+def test_the_mesh_may_follow_the_speeds(refused, tmp_path):
+    refused(1, "no.glb", "bake", *SMALL, "--speeds", "0.1,2", "no.glb", cwd=tmp_path)
+
+
 def test_a_speed_that_is_the_base_speed_changes_nothing(good, box, bake, tmp_path):
     path, said = bake("--speeds", "0.5,0.5")
     assert said["flows"] == 3 and good("info", path, "--json").json["speeds"] == 1

@@ -259,6 +259,27 @@ def test_a_folder_holds_all_it_needs(good, refused, tmp_path, box):
     refused(1, "plan again", "bake", "solve", tmp_path / "jobs")
 
 
+def test_nothing_of_others_is_written_over(refused, tmp_path, box):
+    """Before anything is solved."""
+    (tmp_path / "jobs").mkdir()
+    (tmp_path / "jobs" / "plan.json").write_text('{"my": "plan"}')
+    refused(1, "plan.json|not a plan of frm bake", "bake", "plan", box, "-o", tmp_path / "jobs", *OPTIONS)
+    assert (tmp_path / "jobs" / "plan.json").read_text() == '{"my": "plan"}'
+    (tmp_path / "notes.txt").write_text("mine")
+    refused(1, "--raw|notes.txt|no raw tables", "bake", box, "-o", "a.frm", "--raw", "notes.txt", *OPTIONS, cwd=tmp_path)
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+    for other in ("--work", "--report"):
+        refused(1, "a.frm|two outputs", "bake", box, "-o", "a.frm", other, "a.frm", *OPTIONS, cwd=tmp_path)
+    assert names(tmp_path) == ["jobs", "notes.txt"]
+
+
+def test_raw_tables_of_a_merged_map(good, tmp_path, box):
+    good("bake", "plan", box, "-o", tmp_path / "jobs", *OPTIONS)
+    good("bake", "solve", tmp_path / "jobs")
+    good("bake", "merge", tmp_path / "jobs", "-o", tmp_path / "a.frm", "--raw", tmp_path / "a.frmraw")
+    assert "as stated" in good("verify", tmp_path / "a.frm", "--against", tmp_path / "a.frmraw").out
+
+
 def test_wrong_folders_and_words(refused, tmp_path, box):
     refused(1, "plan.json|frm bake plan", "bake", "solve", tmp_path)
     refused(1, "plan.json", "bake", "merge", tmp_path, "-o", tmp_path / "b.frm")

@@ -159,6 +159,25 @@ def test_an_interrupted_run_says_what_is_known(box, tmp_path):
         assert "interrupted" in (tmp_path / "report" / "report.html").read_text()
 
 
+@needs_matplotlib
+def test_who_reads_standard_output_may_go(box, tmp_path):
+    """And what another run of this report left when it was killed is gone."""
+    dead = subprocess.Popen(["true"])
+    dead.wait()
+    (tmp_path / "report" / f".frm_report.tmp{dead.pid}").mkdir(parents=True)
+    run = subprocess.Popen([PROGRAM, "flow", box, "--direction", "-1,0,0", *SHORT, "--json", "--report", "report"],
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path)
+    run.stdout.close()
+    err = run.stderr.read()
+    assert run.wait(timeout=200) == 1 and "frm:" not in err
+    assert names(tmp_path / "report") == ["flow.json", "report.html", "series.csv", "slices.f32"]
+
+
+def test_a_coarse_run_says_that_its_grid_is_not_measured(good, box):
+    text = good("flow", box, *SECTION[:-4], "--resolution", "7", "--start-up", "0.5", "--duration", "1").err
+    assert "note: on under 8 cells" in text and "at least" in text
+
+
 def test_a_run_interrupted_before_its_series_leaves_nothing(box, tmp_path):
     arguments = [*SECTION, "--no-grid-error", "-o", "s.csv"]
     arguments[arguments.index("--start-up") + 1] = "9000"

@@ -401,6 +401,24 @@ TEST_CASE("a run ends when it knows enough, or when its time is up", "[flow]") {
     CHECK(cancelled.samples > 0);
 }
 
+TEST_CASE("a run that ends before it records on all cells is the one on half of them", "[flow]") {
+    const Surface body = test::box({1, 1, 1});
+    FlowCase c = unit_case(100, 12, 30, 2);
+    c.grid_error = true;
+    const auto stop = [](const FlowState& state) { return state.coarse || state.recording; };
+    const FlowSeries half = solve_flow(body, one_region(body), c, stop);
+    CHECK(half.ending == FlowEnding::cancelled);
+    CHECK(half.half);
+    REQUIRE(half.samples > 0);
+    CHECK(half.uncertainty.grid < 0);
+    FlowCase coarse = c;
+    coarse.grid_error = false;
+    coarse.resolution = 6;
+    const FlowSeries alone = solve(body, coarse);
+    CHECK(half.steps == alone.steps);
+    CHECK(half.pressure == alone.pressure);
+}
+
 TEST_CASE("pictures show the stream ahead, and the wake", "[flow]") {
     FlowCase c = unit_case(100, 8, 6, 3);
     c.pictures = true;

@@ -84,6 +84,8 @@ def _uncertainty(flow: Flow) -> str:
     json, parts = flow.json, flow.json["uncertainty_parts"]
     statistics = (f"from how the running mean over {quantity(flow.time[-1] + json['interval'], 's')} still moves")
     grid = "not measured: the run on half the resolution was left out"
+    if json.get("half_resolution"):
+        grid = "not measured: these are the cells of the run on half the resolution"
     if parts["grid"] is not None:
         grid = "from a run on half the resolution"
         if json.get("cd_coarse") is not None:
@@ -122,8 +124,11 @@ def _advice(flow: Flow) -> list[str]:
         advice.append(f"The far field is the largest part, {_percent(parts['blockage'])}; it is the solver's own, and "
                       "no option makes it smaller.")
     if json["uncertainty_parts"]["grid"] is None:
-        advice.append("The error of the grid is not known, so the total says too little: leave out "
-                      "<code>--no-grid-error</code>.")
+        advice.append("The error of the grid is not known, so the total says too little: " + (
+            f"the run ended before the one on all cells had recorded, and all of this is of {resolution / 2:g} cells. "
+            "Give it more time." if json.get("half_resolution") else
+            "take 8 cells or more, <code>--resolution 8</code>." if resolution < 8 else
+            "leave out <code>--no-grid-error</code>."))
     if json["reynolds_solved"] < 0.999 * json["reynolds"]:
         advice.append(f"The cells carry a Reynolds number of {number(json['reynolds_solved'])}, not the "
                       f"{number(json['reynolds'])} asked for. {finer}.")
