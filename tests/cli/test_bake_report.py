@@ -119,7 +119,7 @@ def test_an_older_report_is_replaced_and_other_files_are_not(good, refused, box,
         assert names(tmp_path / "report") == FILES
     (tmp_path / "report" / "thesis.txt").write_text("years of work")
     refused(1, "--report|report|other files", *again, tmp_path / "report")
-    refused(1, "--report|box.frm|not a folder", *again, tmp_path / "box.frm")
+    refused(1, "--report|thesis.txt|not a folder", *again, tmp_path / "report" / "thesis.txt")
     refused(1, "two outputs", *again, tmp_path / "x", "--raw", tmp_path / "x" / "bake.json")
     assert names(tmp_path) == ["box.frm", "report", "work"] and names(tmp_path / "report") == [*FILES, "thesis.txt"]
 
