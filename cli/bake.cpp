@@ -72,8 +72,9 @@ double to_do(const bake::Store& store, const bake::BakePlan& plan) {
 
 void run(Options& o) {
     bake::BakeOptions& options = o.arguments.bake;
+    const std::string root = o.work.empty() ? o.out + ".work" : "";
     std::vector<std::string> outputs = BakePage::files(o.report);
-    outputs.insert(outputs.end(), {o.out, o.raw, o.report, o.work.empty() ? o.out + ".work" : o.work});
+    outputs.insert(outputs.end(), {o.out, o.raw, o.report, o.work, root});
     require_distinct(outputs, {options.mesh});
     require_map_place(o.out, o.named, o.force);
     require_raw_place(o.raw, o.force);
@@ -82,7 +83,6 @@ void run(Options& o) {
     const std::unique_ptr<BakePage> page = o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report);
     print_plan(plan);
 
-    const std::string root = o.work.empty() ? o.out + ".work" : "";
     bake::Store store(bake::work_folder(root.empty() ? o.work : root, plan), plan, print_note);
     if (store.count(plan.tasks.size()) > 0) std::fprintf(stderr, "going on: %s\n", kept_text(store, plan).c_str());
 

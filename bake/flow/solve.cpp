@@ -199,7 +199,7 @@ private:
             met_ = met;
         }
         if (case_.seconds > 0 && seconds_since(started_) > case_.seconds) {
-            if (measure_.empty() && before_updates_ == 0) {
+            if (nothing_is_known()) {
                 throw BakeError(
                     "flow: the time given (seconds) ended while the flow was still starting; give more, or "
                     "lower resolution or start_up");
@@ -209,9 +209,12 @@ private:
         if (!progress_ || seconds_since(reported_) < progress_seconds) return false;
         reported_ = Clock::now();
         if (progress_(state())) return false;
-        if (measure_.empty() && before_updates_ == 0) throw FlowCancelled("flow: cancelled");
+        if (nothing_is_known()) throw FlowCancelled("flow: cancelled");
         return end(FlowEnding::cancelled);
     }
+
+    /// Neither from this run nor from one on half the resolution before it.
+    bool nothing_is_known() const { return measure_.empty() && before_updates_ == 0; }
 
     bool end(FlowEnding ending) {
         series_.ending = ending;

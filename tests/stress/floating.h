@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "core/body/coefficients.h"
+#include "tests/support/catch.h"
 #include "tests/support/worlds.h"
 
 namespace frm::test {
@@ -124,5 +127,72 @@ private:
         }
     }
 };
+
+/// A box of edges 1, 1, `flat`, with about the added mass of a cube (docs/added-mass.md: 0.64 rho V).
+inline std::shared_ptr<const Map> box_map(double edge, double flat) {
+    Map map = bake::formula_map(fine_box({edge, edge, flat * edge}, edge / 4), 18, 2, 32);
+    map.has_added_mass = true;
+    const double displaced = 1000 * flat * edge * edge * edge;
+    for (std::size_t i = 0; i < 6; ++i) map.added_mass[7 * i] = displaced * (i < 3 ? 0.64 : 0.05 * edge * edge);
+    map.complete();
+    return std::make_shared<Map>(std::move(map));
+}
+
+struct FloatingScene {
+    double edge = 0.4, flat = 0.6, ratio = 0.5;
+    double dt = 0.002, seconds = 30;
+    Border border = Border::reflecting;
+    std::uint32_t skip = skip_default;
+    std::int32_t cells = 32;
+    double cell = 0.05, depth = 0.8;
+    double above = 0.3;  ///< where it begins, above where it floats, of its edge
+    double tilt = 0.2;
+    bool with = true;                           ///< what the interface gives for a light body
+    bool guided = false;                        ///< it only heaves
+    std::function<double(std::size_t)> tick{};  ///< s, of tick n; none: all are dt long
+};
+
+struct FloatingOutcome {
+    std::vector<double>
+        energy;         ///< the largest kinetic energy of body and energy of water in each quarter, of m g edge
+    double speed = 0;   ///< the largest in the last quarter, m/s, of any point of it
+    double height = 0;  ///< at the end, of the edge, above where it floats
+};
+
+inline FloatingOutcome let_float(const FloatingScene& s) {
+    WorldDef def;
+    def.skip = s.skip;
+    World world = world_of(def);
+    Water& water =
+        world.create_water(water_of(s.cells, static_cast<float>(s.cell), static_cast<float>(s.depth), s.border, 0));
+    const double rest = s.edge * s.flat * (0.5 - s.ratio);
+    FloatingBox box(world, box_map(s.edge, s.flat), {s.edge, s.edge, s.flat * s.edge}, s.ratio,
+                    {{0.3 * s.edge, 0.1 * s.edge, rest + s.above * s.edge}, turned({1, 0.3, 0.2}, s.tilt)});
+    FloatingOutcome out;
+    out.energy.assign(4, 0.0);
+    double share = 0;  // of the time
+    for (std::size_t n = 0; share < 1; ++n) {
+        const double dt = s.tick ? s.tick(n) : s.dt;
+        box.tell(world);
+        REQUIRE(world.tick(static_cast<float>(dt)));
+        if (s.with)
+            box.step_with(dt, def.fluid);
+        else
+            box.step(dt);
+        REQUIRE(length(box.velocity) < 100);
+        // On a pole, so that it does not leave a small basin.
+        box.velocity.x = box.velocity.y = 0;
+        box.pose.position.x = 0.3 * s.edge, box.pose.position.y = 0.1 * s.edge;
+        if (s.guided) box.spin = {};
+        double& most = out.energy[static_cast<std::size_t>(4 * share)];
+        if (n % 4 == 0)
+            most =
+                std::max(most, (box.energy() + water_energy(water.field, def.fluid)) / (box.mass * 9.80665 * s.edge));
+        if (share > 0.75) out.speed = std::max(out.speed, length(box.velocity) + s.edge * length(box.spin));
+        share = s.tick ? share + dt / s.seconds : static_cast<double>(n + 1) * dt / s.seconds;
+    }
+    out.height = (box.pose.position.z - rest) / s.edge;
+    return out;
+}
 
 }  // namespace frm::test

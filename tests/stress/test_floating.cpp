@@ -10,70 +10,6 @@ using namespace frm::test;
 
 namespace {
 
-/// A box of edges 1, 1, `flat`, with about the added mass of a cube (docs/added-mass.md: 0.64 rho V).
-std::shared_ptr<const Map> box_map(double edge, double flat) {
-    Map map = bake::formula_map(fine_box({edge, edge, flat * edge}, edge / 4), 18, 2, 32);
-    map.has_added_mass = true;
-    const double displaced = 1000 * flat * edge * edge * edge;
-    for (std::size_t i = 0; i < 6; ++i) map.added_mass[7 * i] = displaced * (i < 3 ? 0.64 : 0.05 * edge * edge);
-    map.complete();
-    return std::make_shared<Map>(std::move(map));
-}
-
-struct Scene {
-    double edge = 0.4, flat = 0.6, ratio = 0.5;
-    double dt = 0.002, seconds = 30;
-    Border border = Border::reflecting;
-    std::uint32_t skip = skip_default;
-    std::int32_t cells = 32;
-    double cell = 0.05, depth = 0.8;
-    double above = 0.3;  ///< where it begins, above where it floats, of its edge
-    double tilt = 0.2;
-    bool with = true;     ///< what the interface gives for a light body
-    bool guided = false;  ///< it only heaves
-};
-
-struct Outcome {
-    std::vector<double>
-        energy;         ///< the largest kinetic energy of body and energy of water in each quarter, of m g edge
-    double speed = 0;   ///< the largest in the last quarter, m/s, of any point of it
-    double height = 0;  ///< at the end, of the edge, above where it floats
-};
-
-Outcome let_float(const Scene& s) {
-    WorldDef def;
-    def.skip = s.skip;
-    World world = world_of(def);
-    Water& water =
-        world.create_water(water_of(s.cells, static_cast<float>(s.cell), static_cast<float>(s.depth), s.border, 0));
-    const double rest = s.edge * s.flat * (0.5 - s.ratio);
-    FloatingBox box(world, box_map(s.edge, s.flat), {s.edge, s.edge, s.flat * s.edge}, s.ratio,
-                    {{0.3 * s.edge, 0.1 * s.edge, rest + s.above * s.edge}, turned({1, 0.3, 0.2}, s.tilt)});
-    Outcome out;
-    out.energy.assign(4, 0.0);
-    const auto ticks = static_cast<std::size_t>(s.seconds / s.dt);
-    for (std::size_t n = 0; n < ticks; ++n) {
-        box.tell(world);
-        REQUIRE(world.tick(static_cast<float>(s.dt)));
-        if (s.with)
-            box.step_with(s.dt, def.fluid);
-        else
-            box.step(s.dt);
-        REQUIRE(length(box.velocity) < 100);
-        // On a pole, so that it does not leave a small basin.
-        box.velocity.x = box.velocity.y = 0;
-        box.pose.position.x = 0.3 * s.edge, box.pose.position.y = 0.1 * s.edge;
-        if (s.guided) box.spin = {};
-        double& most = out.energy[4 * n / ticks];
-        if (n % 4 == 0)
-            most =
-                std::max(most, (box.energy() + water_energy(water.field, def.fluid)) / (box.mass * 9.80665 * s.edge));
-        if (n > 3 * ticks / 4) out.speed = std::max(out.speed, length(box.velocity) + s.edge * length(box.spin));
-    }
-    out.height = (box.pose.position.z - rest) / s.edge;
-    return out;
-}
-
 struct Fall {
     double edge, ratio, dt;
     Vec3d velocity;
@@ -136,9 +72,9 @@ TEST_CASE("what a floating box leaves of its energy, as docs/stability.md has it
         "| density ratio | dt, s | largest energy of each quarter, of m g times its edge |\n| ---: | ---: | --- |\n");
     for (const double ratio : {0.5, 0.05})
         for (const double dt : {0.001, 0.002, 0.01, 1.0 / 60, 0.028, 0.05}) {
-            Scene scene{};
+            FloatingScene scene{};
             scene.ratio = ratio, scene.with = ratio < 0.1, scene.dt = dt, scene.seconds = 80, scene.guided = true;
-            const Outcome out = let_float(scene);
+            const FloatingOutcome out = let_float(scene);
             std::printf("| %.2f | %.4f | %.3f, %.3f, %.3f, %.3f |\n", ratio, dt, out.energy[0], out.energy[1],
                         out.energy[2], out.energy[3]);
             std::fflush(stdout);
@@ -147,17 +83,18 @@ TEST_CASE("what a floating box leaves of its energy, as docs/stability.md has it
 
 TEST_CASE("a floating box in a closed basin drives no waves", "[stress]") {
     // Scenes in which it did: waves grew to 0.2 m within two minutes, or tenfold within one.
-    Scene heavy{};
+    FloatingScene heavy{};
     heavy.skip = skip_nothing, heavy.with = false, heavy.guided = true, heavy.dt = 0.028, heavy.seconds = 60;
-    Scene small = heavy;  // five wave steps a tick
+    FloatingScene small = heavy;  // five wave steps a tick
     small.edge = 0.1, small.cell = 0.0125, small.depth = 0.2, small.seconds = 20;
-    Scene light{};  // the water waits
+    FloatingScene light{};  // the water waits
     light.ratio = 0.05, light.guided = true, light.dt = 0.001, light.seconds = 40;
-    Scene flat{};  // slaps the water; without the momentum that what gets wet takes, its waves grew from 3 to 18 J
+    FloatingScene
+        flat{};  // slaps the water; without the momentum that what gets wet takes, its waves grew from 3 to 18 J
     flat.ratio = 0.05, flat.guided = true, flat.dt = 1.0 / 60, flat.seconds = 60;
     flat.tilt = 0;
-    for (const Scene& scene : {heavy, small, light, flat}) {
-        const Outcome out = let_float(scene);
+    for (const FloatingScene& scene : {heavy, small, light, flat}) {
+        const FloatingOutcome out = let_float(scene);
         INFO("dt " << scene.dt << ": " << out.energy[0] << " " << out.energy[1] << " " << out.energy[2] << " "
                    << out.energy[3]);
         CHECK(out.energy[1] < out.energy[0]);
@@ -173,7 +110,7 @@ TEST_CASE("a floating box left alone comes to rest and stays", "[stress]") {
     int boxes = 0;
     for (std::uint64_t seed = stress_seed(); turns.more(); ++seed, ++boxes) {
         Random random(seed);
-        Scene scene;
+        FloatingScene scene;
         scene.edge = random.range(0.1, 2);
         scene.ratio = random.once_in(2) ? random.range(0.05, 0.3) : random.uniform(0.3, 0.95);
         scene.dt = 1 / rates[random.below(5)];
@@ -185,7 +122,7 @@ TEST_CASE("a floating box left alone comes to rest and stays", "[stress]") {
         scene.above = random.uniform(0, 0.5);
         if (random.once_in(2)) scene.skip = skip_nothing;
         scene.seconds = 150 * std::sqrt(scene.edge / 9.80665);
-        const Outcome out = let_float(scene);
+        const FloatingOutcome out = let_float(scene);
         INFO("FRM_STRESS_SEED=" << seed << " edge " << scene.edge << " ratio " << scene.ratio << " dt " << scene.dt
                                 << " depth " << scene.depth << " cell " << scene.cell
                                 << (scene.border == Border::absorbing ? " open" : " closed") << ": " << out.energy[0]
