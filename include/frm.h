@@ -470,7 +470,9 @@ FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *sta
  * ticking thread and never makes it wait. [any] */
 FRM_API frm_status FRM_CALL frm_water_read_snapshot(frm_water water, frm_water_state *state);
 
-/* Sets heights (m, at cell centres, within +-depth) and lets the water rest. `count` must be nx * ny. [owner] */
+/* Sets heights (m, at cell centres, within +-depth) and lets the water rest. `count` must be nx * ny. The heights are those
+ * with the bodies where they are: none of them makes a splash, and one that is destroyed takes along only what it has
+ * displaced since. [owner] */
 FRM_API frm_status FRM_CALL frm_water_set_height(frm_water water, const float *height, uint64_t count);
 
 /* Sets a pressure (Pa, at cell centres) that pushes up on the surface in every tick until it is changed: p of

@@ -85,6 +85,8 @@ public:
     double rest_before() const { return rest_before_; }
     /// The part of the thickness that went into the water after the body did: what it takes along when it is taken out.
     float deposited_share() const;
+    /// The water's heights are a host's: what the body displaces by now is in them, as before its first tick.
+    void count_as_given() { first_volume_ = volume_; }
 
 private:
     Footprint(const FieldDef& water, float radius, int levels, std::pmr::memory_resource* memory);
@@ -101,7 +103,7 @@ private:
     double laid_ = 0;                    ///< volume of the thickness, in cells times metres
     double rest_ = 0, rest_before_ = 0;  ///< volume that is even over all of the water
     double volume_ = 0;                  ///< of all the thickness before
-    double first_volume_ = 0;            ///< of the first tick, which was not put into the water
+    double first_volume_ = 0;            ///< of the first tick, which was not put into the water; or of set heights
     Pyramid thickness_, pressure_;
     AlignedFloats thickness_before_;
 };

@@ -61,6 +61,7 @@ void World::destroy_water() {
 void World::set_height(const float* height) {
     water_->set_height(height);
     for (const auto& body : bodies_) {
+        body->footprint->count_as_given();
         body->footprint->own.calm();
         body->account->clear();
     }

@@ -106,6 +106,37 @@ TEST_CASE("putting a body in and taking it out again and again leaves the water 
     CHECK(std::fabs(volume(water.field)) < 1e-6);
 }
 
+TEST_CASE("heights that are set are those with the bodies in the water", "[coupling]") {
+    World world = test::world_of();
+    Water& water = world.create_water(test::water_of(64, 0.025f, 0.3f, Border::reflecting));
+    Body& body = world.create_body(body_of(slab_map(), {0, 0, 0.1}));
+    const auto put = [&](double z) {
+        world.set_motion(body, {{0, 0, z}, {}}, {});
+        world.tick(0.002f);
+    };
+    put(0.1);
+    put(0);  // half in: 0.0045 m^3
+    REQUIRE(volume(water.field) == Approx(0.0045).epsilon(0.002));
+    const std::vector<float> calm(water.field.cells(), 0.0f);
+    world.set_height(calm.data());
+    SECTION("taken out it leaves no hole") {
+        world.destroy_body(body);
+        CHECK(std::fabs(volume(water.field)) < 1e-6);
+    }
+    SECTION("what it displaces from then on it takes along") {
+        put(-0.05);
+        CHECK(volume(water.field) == Approx(0.0045).epsilon(0.002));
+        world.destroy_body(body);
+        CHECK(std::fabs(volume(water.field)) < 1e-6);
+    }
+    SECTION("lifted out it leaves the hole that it was in") {
+        put(0.1);
+        CHECK(volume(water.field) == Approx(-0.0045).epsilon(0.002));
+        world.destroy_body(body);
+        CHECK(volume(water.field) == Approx(-0.0045).epsilon(0.002));
+    }
+}
+
 TEST_CASE("a heaving hull makes the same waves on coarse and fine cells", "[coupling]") {
     const auto amplitude = [](float cell) {
         World world = test::world_of();
