@@ -1,53 +1,12 @@
 #include "cli/bake_options.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
 
-#include "bake/mesh/gltf.h"
-#include "bake/mesh/units.h"
+#include "cli/mesh_size.h"
 #include "cli/problem_file.h"
 
 namespace frm::cli {
-namespace {
-
-std::string number(double v) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", v);
-    return text;
-}
-
-/// Anything but a clear yes is a no, the end of the input too.
-bool ask(const std::string& question) {
-    std::fprintf(stderr, "%s [y/n] ", question.c_str());
-    std::fflush(stderr);
-    std::string answer;
-    return static_cast<bool>(std::getline(std::cin, answer)) && !answer.empty() &&
-           (answer[0] == 'y' || answer[0] == 'Y');
-}
-
-}  // namespace
-
-void settle_unit(BakeArguments& a) {
-    if (a.has_scale || a.yes) return;
-    const double extent = bake::extent_of_gltf(a.bake.mesh);
-    if (bake::plausible_size(extent)) return;
-    const bake::Unit unit = bake::likely_unit(extent);
-    const std::string as_it_is = number(extent) + " m", scaled = number(extent * unit.scale) + " m";
-    char scale[32];
-    std::snprintf(scale, sizeof scale, "%g", unit.scale);
-    if (!isatty(STDIN_FILENO) || !isatty(STDERR_FILENO))
-        throw Failure(a.bake.mesh + ": is " + as_it_is + " long, as glTF counts in metres. If it was drawn in " +
-                      unit.name + ", add --scale " + scale + " (" + scaled + "); if " + as_it_is +
-                      " is right, add --yes");
-    std::fprintf(stderr, "%s is %s long, as glTF counts in metres.\n", a.bake.mesh.c_str(), as_it_is.c_str());
-    if (ask("Was it drawn in " + std::string(unit.name) + ", so that it is " + scaled + "?"))
-        a.bake.scale = unit.scale;
-    else if (!ask("Is " + as_it_is + " right?"))
-        throw Failure(a.bake.mesh + ": say by how much its size is to be multiplied: --scale F");
-}
 
 Cost cost_of(const bake::BakePlan& plan) {
     Cost cost;
@@ -61,6 +20,10 @@ Cost cost_of(const bake::BakePlan& plan) {
 void complete(const CLI::App& command, BakeArguments& a) {
     a.bake.quality = bake::quality_of(a.quality);
     a.has_scale = command.count("--scale") > 0;
+}
+
+void settle_unit(BakeArguments& a) {
+    if (!a.has_scale && !a.yes) settle_size(a.bake.mesh, a.bake.scale);
 }
 
 bake::BakePlan make_plan(const BakeArguments& a, const std::string& out) {
@@ -88,13 +51,8 @@ void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required) {
         .add_option("--quality", a.quality, "how fine all that follows is; draft takes a minute (default: standard)")
         ->check(one_of({"draft", "standard", "high"}))
         ->type_name("draft|standard|high");
-    command
-        .add_option("--scale", a.bake.scale,
-                    "multiply the mesh's size: 0.001 for one drawn in millimetres, 0.01\n"
-                    "centimetres, 0.0254 inches (default: 1; a size that is not plausible is asked about)")
-        ->check(number_within(1e-6, 1e6))
-        ->type_name("F");
-    command.add_flag("--yes", a.yes, "the mesh's size is right as it is: do not ask");
+    add_scale(command, a.bake.scale);
+    command.add_flag("--yes", a.yes, "the mesh's size is right as it is: do not ask where it is not plausible");
     command.add_option("--speed", a.bake.speed, "base speed of the stream, m/s")
         ->check(stream_speed_range())
         ->type_name("N")

@@ -20,8 +20,7 @@ void add_bake_arguments(CLI::App& command, BakeArguments& a, bool required);
 /// After parsing: what the words given come to.
 void complete(const CLI::App& command, BakeArguments& a);
 
-/// Reads the mesh's size. One that is not plausible in metres gets a question on a terminal, else a Failure that says
-/// what to add to the command.
+/// settle_size() of the mesh, unless --scale or --yes was given.
 void settle_unit(BakeArguments& a);
 
 /// plan_bake(). Where the shape is refused, a file beside `out` shows the place.

@@ -10,6 +10,7 @@
 #include "cli/file.h"
 #include "cli/flow_report.h"
 #include "cli/flow_results.h"
+#include "cli/mesh_size.h"
 #include "cli/problem_file.h"
 #include "cli/progress.h"
 
@@ -19,9 +20,10 @@ namespace {
 struct Options {
     bake::FlowCase flow;
     std::string mesh, out, report;
-    Numbers direction{}, section{}, spin{};
-    bool has_direction = false, has_section = false, automatic_section = false, has_spin = false, has_slab = false;
-    double length = 0, confidence = 0, memory = 8;
+    Numbers direction{}, section{}, section_point{}, spin{};
+    bool has_direction = false, has_section = false, automatic_section = false, has_spin = false, has_slab = false,
+         has_section_point = false;
+    double length = 0, confidence = 0, memory = 0, scale = 1;
     bool no_grid_error = false, json = false;
 };
 
@@ -62,6 +64,30 @@ Vec3d direction_for_spin(const bake::Surface& surface, const Vec3d& spin) {
     return best;
 }
 
+/// What the solver calls its fields, as options.
+std::string with_options(std::string text) {
+    constexpr const char* names[][2] = {{"section_origin", "--section-point"},
+                                        {"section_normal", "--section"},
+                                        {"start_up", "--start-up"},
+                                        {"memory_limit", "--memory"}};
+    for (const auto& [field, option] : names)
+        if (const std::size_t at = text.find(field); at != std::string::npos)
+            text.replace(at, std::string(field).size(), option);
+    return text;
+}
+
+/// What `solve` returns. Where it refuses the case, its fields are named as the options that they come from.
+template <typename Solve>
+auto in_options(Solve solve) -> decltype(solve()) {
+    try {
+        return solve();
+    } catch (const bake::FlowCancelled&) {
+        throw;
+    } catch (const bake::BakeError& error) {
+        throw Failure(with_options(error.what()));
+    }
+}
+
 /// What can be said of the options before the mesh is read.
 void check(const Options& o) {
     if (o.has_spin && !(length(o.spin) > 0)) throw CLI::ValidationError("--spin", "is zero: leave it out");
@@ -69,6 +95,8 @@ void check(const Options& o) {
         throw CLI::ValidationError("--speed", "0 is for a body that spins (--spin); else it is from 1e-06 to 10000");
     if (!o.has_direction && o.flow.speed > 0) throw CLI::RequiredError("--direction");
     if (o.has_slab && !o.has_section) throw CLI::ValidationError("--slab", "is the span of a section: add --section");
+    if (o.has_section_point && !o.has_section)
+        throw CLI::ValidationError("--section-point", "is where a section is cut: add --section");
     std::vector<std::string> outputs{o.out};
     if (!o.report.empty())
         for (const std::string& path : FlowReport::files(o.report)) outputs.push_back(path);
@@ -88,7 +116,8 @@ void complete(Options& o, const bake::Surface& surface) {
     if (!o.has_direction) c.direction = direction_for_spin(surface, c.spin);
     if (!o.has_section) return;
     c.section = true;
-    c.section_origin = c.spin_centre;
+    c.section_origin = o.has_section_point ? Vec3d(o.section_point[0], o.section_point[1], o.section_point[2])
+                                           : bake::measure(surface).centroid;
     c.section_normal =
         o.automatic_section ? longest_across(surface, c.direction) : Vec3d(o.section[0], o.section[1], o.section[2]);
     if (std::fabs(dot(c.section_normal, c.direction)) > 1e-6)
@@ -196,15 +225,18 @@ void run(Options& o) {
     if (!o.out.empty()) require_writable(o.out);
 
     std::vector<std::string> notes;
-    const bake::Surface surface = load_or_show(o.mesh, o.out, [&] { return bake::load_surface(o.mesh, notes); });
+    const bake::Surface surface =
+        load_or_show(o.mesh, o.out, [&] { return bake::load_surface(o.mesh, notes, o.scale); });
+    const std::string size = note_on_size(bake::longest_side(bake::measure(surface)));
+    if (o.scale == 1 && !size.empty()) notes.push_back(size);
     complete(o, surface);
-    const bake::FlowPlan plan = bake::plan_flow(surface, o.flow);
+    const bake::FlowPlan plan = in_options([&] { return bake::plan_flow(surface, o.flow); });
     const std::unique_ptr<FlowReport> report = o.report.empty() ? nullptr : std::make_unique<FlowReport>(o.report);
     if (!plan.warning.empty()) notes.push_back(plan.warning);
     for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     print_plan(plan, length_of(o.flow, plan, o.length));
 
-    const bake::FlowSeries flow = solve(surface, o.flow);
+    const bake::FlowSeries flow = in_options([&] { return solve(surface, o.flow); });
     const FlowResults results = evaluate(surface, o.flow, flow, o.length);
     if (!o.out.empty()) write_file(o.out, csv_of(flow));
     const bool bare = o.out.empty() && o.report.empty() && !o.json;  // the series is all of standard output
@@ -224,6 +256,7 @@ void add_case(CLI::App& command, Options& o) {
         ->required()
         ->check(not_empty())
         ->type_name("");
+    add_scale(command, o.scale);
     add_direction(command, "--direction", o.direction,
                   "where the water goes, in the mesh's frame (not needed with --speed 0)");
     command.add_option("--speed", o.flow.speed, "of the stream, m/s; 0 only with --spin")
@@ -242,9 +275,12 @@ void add_case(CLI::App& command, Options& o) {
                "rad/s; the mesh turns about the axis through its centroid: any mesh with\n"
                "--speed 0, in a stream a body of revolution (default: it stands)");
     add_direction_or_auto(command, "--section", o.section, o.automatic_section,
-                          "solve in two dimensions the cut through the centroid, across this normal\n"
+                          "solve in two dimensions the cut through the mesh across this normal\n"
                           "(default: the mesh's longest axis across the stream).\n"
                           "Forces and area are then for a metre of span");
+    add_vector(command, "--section-point", o.section_point, 1e6,
+               "a point that the section goes through, m, in the mesh's frame (default:\n"
+               "the centroid)");
     command
         .add_option("--slab", o.flow.slab,
                     "of a section, solve so many reference lengths of span in three dimensions:\n"
@@ -295,10 +331,9 @@ void add_effort(CLI::App& command, Options& o) {
         ->check(number_within(-360, 360))
         ->type_name("DEGREES")
         ->capture_default_str();
-    command.add_option("--memory", o.memory, "refuse what needs more, GiB")
+    command.add_option("--memory", o.memory, "refuse what needs more, GiB (default: three quarters of this machine's)")
         ->check(number_within(0.001, 1e5))
-        ->type_name("GIB")
-        ->capture_default_str();
+        ->type_name("GIB");
     command.add_option("--threads", o.flow.threads, "0: all cores. The result does not depend on it")
         ->check(whole_within(0, 256))
         ->type_name("N")
@@ -336,6 +371,7 @@ void add_flow(CLI::App& app) {
     command->callback([options, command] {
         options->has_direction = command->count("--direction") > 0;
         options->has_section = command->count("--section") > 0;
+        options->has_section_point = command->count("--section-point") > 0;
         options->has_spin = command->count("--spin") > 0;
         options->has_slab = command->count("--slab") > 0;
         run(*options);

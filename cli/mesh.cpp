@@ -16,6 +16,7 @@
 #include "bake/symmetry/symmetry.h"
 #include "cli/command.h"
 #include "cli/file.h"
+#include "cli/mesh_size.h"
 #include "cli/problem_file.h"
 
 namespace frm::cli {
@@ -24,7 +25,7 @@ namespace {
 struct Options {
     std::string mesh, out;
     bool json = false, regions = false, added_mass = false;
-    double density = 1000;
+    double density = 1000, scale = 1;
 };
 
 struct Choice {
@@ -155,10 +156,12 @@ void print_text(const bake::Repaired& r, const bake::SurfaceProperties& shape, c
 void run(const Options& o) {
     require_distinct({o.out}, {o.mesh});
     if (!o.out.empty()) require_writable(o.out);
-    const bake::Repaired repaired =
-        load_or_show(o.mesh, o.out, [&] { return bake::repair(bake::load_gltf(o.mesh), o.mesh); });
+    bake::Repaired repaired =
+        load_or_show(o.mesh, o.out, [&] { return bake::repair(bake::load_gltf(o.mesh, o.scale), o.mesh); });
     if (!o.out.empty()) write_file(o.out, bake::write_glb({{"surface", {0.5, 0.5, 0.5, 1}, &repaired.surface}}, "frm"));
     const bake::SurfaceProperties shape = bake::measure(repaired.surface);
+    if (const std::string note = note_on_size(bake::longest_side(shape)); o.scale == 1 && !note.empty())
+        repaired.notes.push_back(note);
     const bake::Thickness thickness = bake::measure_thickness(repaired.surface);
     const bake::Symmetry symmetry = bake::find_symmetry(repaired.surface);
     const std::vector<Choice> choices = o.regions ? choose(repaired.surface) : std::vector<Choice>{};
@@ -195,6 +198,7 @@ void add_mesh(CLI::App& app) {
         ->required()
         ->check(not_empty())
         ->type_name("");
+    add_scale(*command, o.scale);
     command->add_option("-o,--out", o.out, "write the repaired surface to this .glb file")
         ->check(not_empty())
         ->type_name("FILE");

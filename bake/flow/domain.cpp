@@ -192,6 +192,20 @@ std::vector<Segment> outline(const Surface& surface, const Frame& frame, const V
     return segments;
 }
 
+/// Of a section's extent across the stream, what lies between its parts.
+double gaps_across(const std::vector<Segment>& segments) {
+    std::vector<std::pair<double, double>> covered;
+    covered.reserve(segments.size());
+    for (const Segment& s : segments) covered.emplace_back(std::min(s.a.y, s.b.y), std::max(s.a.y, s.b.y));
+    std::sort(covered.begin(), covered.end());
+    double gaps = 0, end = covered.front().second;
+    for (const auto& [low, high] : covered) {
+        gaps += std::max(0.0, low - end);
+        end = std::max(end, high);
+    }
+    return gaps;
+}
+
 /// Where the first node goes along an axis so that the body's middle is on a node or between two (a symmetric body gets
 /// a symmetric lattice): whichever puts its outermost faces nearer to half-way between nodes, where a wall is sharpest.
 double middle_offset(double extent_cells) {
@@ -329,7 +343,10 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
     Box body;
     if (c.section) {
         segments = outline(surface, d.frame, c.section_origin);
-        if (segments.empty()) throw BakeError("flow: the plane through section_origin does not cut the body; move it");
+        if (segments.empty()) {
+            throw BakeError("flow: the plane through section_origin " + text(c.section_origin) +
+                            " does not cut the body; move it");
+        }
         for (const Segment& s : segments) {
             body.add(s.a);
             body.add(s.b);
@@ -341,8 +358,8 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
 
     FlowPlan& plan = d.plan;
     plan.axes = {d.frame.x, d.frame.y, d.frame.z};
-    plan.projected_area =
-        c.section ? size.y * c.section_span : projected_area(surface, c.direction / length(c.direction));
+    plan.projected_area = c.section ? (size.y - gaps_across(segments)) * c.section_span
+                                    : projected_area(surface, c.direction / length(c.direction));
     if (!(plan.projected_area > 0)) {
         throw BakeError("flow: the body has no area across the stream; check the surface and the direction");
     }
@@ -397,6 +414,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
 
     d.spin = d.frame.to_stream(c.spin) * plan.time_step;
 
+    const std::uint64_t limit = memory_limit_of(c);
     std::uint64_t bytes = 0, finest_steps_of_cells = 0;
     for (std::size_t l = 0; l < d.blocks.size(); ++l) {
         const Block& block = d.blocks[l];
@@ -411,7 +429,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
         finest_steps_of_cells += grid.cells() >> l;
         // In floating point first: the product of three long sides may not fit an integer.
         const double expected = 2.0 * direction_count * sizeof(float) * grid.nx * (grid.ny + 2.0) * (grid.nz + 2.0);
-        if (expected > static_cast<double>(c.memory_limit)) refuse_memory(expected, c.memory_limit);
+        if (expected > static_cast<double>(limit)) refuse_memory(expected, limit);
         bytes += 2 * Populations::bytes(grid);
         if (l + 1 < d.blocks.size()) bytes += Refinement::bytes(grid);
     }
@@ -452,7 +470,7 @@ Domain plan_domain(const Surface& surface, const FlowCase& c) {
         c.section ? 4 * (size.x + size.y) / plan.cell * d.finest().nz : measure(surface).area / (plan.cell * plan.cell);
     plan.bytes = bytes + d.finest().allocated() + static_cast<std::uint64_t>(wetted * 5 * 200);
     if (runs_coarse(c)) plan.bytes += plan_domain(surface, coarser(c)).plan.bytes;  // it waits for the fine one's start
-    if (plan.bytes > c.memory_limit) refuse_memory(static_cast<double>(plan.bytes), c.memory_limit);
+    if (plan.bytes > limit) refuse_memory(static_cast<double>(plan.bytes), limit);
     d.walls = c.section ? walls_of(segments, d) : walls_of(surface, d);
     return d;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bake/error.h"
+#include "bake/flow/machine_memory.h"
 #include "bake/mesh/surface.h"
 #include "bake/progress.h"
 
@@ -49,8 +50,13 @@ struct FlowCase {
                 ///< whose wall could move instead (cheaper)
 
     int threads = 0;  ///< 0: as many as OpenMP gives. The result is the same bits for any number
-    std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< bytes; more is refused before anything is allocated
+    /// Bytes; more is refused before anything is allocated. 0: usable_memory().
+    std::uint64_t memory_limit = 0;
 };
+
+inline std::uint64_t memory_limit_of(const FlowCase& c) {
+    return c.memory_limit > 0 ? c.memory_limit : usable_memory();
+}
 
 /// A box of the nested grid, in the stream's frame (FlowPlan::axes) about the mesh's origin.
 struct FlowBlock {

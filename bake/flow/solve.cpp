@@ -379,7 +379,7 @@ FlowSeries solve_flow(const Surface& surface, const Regions& regions, const Flow
         }
     }
     const double series_bytes = 6.0 * sizeof(float) * domain.samples * regions.count;
-    if (static_cast<double>(domain.plan.bytes) + series_bytes > static_cast<double>(flow_case.memory_limit)) {
+    if (static_cast<double>(domain.plan.bytes) + series_bytes > static_cast<double>(memory_limit_of(flow_case))) {
         throw BakeError("flow: the record of " + std::to_string(regions.count) + " regions takes " +
                         std::to_string(static_cast<std::uint64_t>(series_bytes) >> 20) +
                         " MiB more than memory_limit leaves; lower duration");

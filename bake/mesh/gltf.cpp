@@ -307,30 +307,24 @@ private:
     std::vector<std::size_t> roots_;
 };
 
-double longest_side(const Surface& surface) {
-    const SurfaceProperties box = measure(surface);
-    const Vec3d size = box.high - box.low;
-    return std::max({size.x, size.y, size.z});
-}
-
 }  // namespace
 
 Surface load_gltf(const std::string& path, double scale) {
     const auto model = open_gltf(path);
     Surface surface = SceneReader(path, *model, scale).read();
-    const double across = longest_side(surface);
+    const double across = longest_side(measure(surface));
     if (across > kLargest || across < kSmallest) {
         fail_gltf(path, "",
                   "the shape is " + std::to_string(across) +
                       " m across; glTF is in metres and 1 mm to 1 km is "
-                      "possible: check the unit of the export (millimetres or inches?)");
+                      "possible: check the unit of the export (millimetres or inches?), or scale it");
     }
     return surface;
 }
 
 double extent_of_gltf(const std::string& path) {
     const auto model = open_gltf(path);
-    return longest_side(SceneReader(path, *model, 1).read());
+    return longest_side(measure(SceneReader(path, *model, 1).read()));
 }
 
 }  // namespace frm::bake

@@ -98,6 +98,11 @@ SurfaceProperties measure(const Surface& surface) {
     return result;
 }
 
+double longest_side(const SurfaceProperties& shape) {
+    const Vec3d size = shape.high - shape.low;
+    return std::max({size.x, size.y, size.z});
+}
+
 double projected_area(const Surface& surface, const Vec3d& direction) {
     const double norm = length(direction);
     if (!(norm > 0) || !std::isfinite(norm)) {

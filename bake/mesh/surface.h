@@ -36,6 +36,7 @@ struct SurfaceProperties {
 };
 
 SurfaceProperties measure(const Surface& surface);
+double longest_side(const SurfaceProperties& shape);  ///< of the bounding box, m
 
 /// Area of the surface's shadow along a unit direction, m^2 (of the outline: overlapping parts are counted once).
 double projected_area(const Surface& surface, const Vec3d& direction);

@@ -1,5 +1,6 @@
 #include "bake/mesh/units.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace frm::bake {
@@ -18,14 +19,15 @@ constexpr Candidate too_small[] = {{{"millimetres, converted twice", 1000}, 0},
 
 }  // namespace
 
-Unit likely_unit(double extent) {
-    Unit best{};
-    double least = 1e300;
-    for (const Candidate& c : extent > 1 ? too_large : too_small) {
-        const double doubt = std::fabs(std::log(extent * c.unit.scale)) + c.doubt;
-        if (doubt < least) least = doubt, best = c.unit;
-    }
-    return best;
+std::vector<Unit> likely_units(double extent) {
+    const auto doubt = [&](const Candidate& c) { return std::fabs(std::log(extent * c.unit.scale)) + c.doubt; };
+    std::vector<Candidate> order;
+    for (const Candidate& c : extent > 1 ? too_large : too_small) order.push_back(c);
+    std::sort(order.begin(), order.end(), [&](const Candidate& a, const Candidate& b) { return doubt(a) < doubt(b); });
+    std::vector<Unit> units;
+    for (const Candidate& c : order)
+        if (units.empty() || plausible_size(extent * c.unit.scale)) units.push_back(c.unit);
+    return units;
 }
 
 }  // namespace frm::bake

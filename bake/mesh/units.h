@@ -2,6 +2,8 @@
 // centimetres or inches, and a bake of a paddle of 1,500 m would give a map without a complaint.
 #pragma once
 
+#include <vector>
+
 namespace frm::bake {
 
 struct Unit {
@@ -14,8 +16,9 @@ constexpr double largest_plausible = 20, smallest_plausible = 0.005;
 
 inline bool plausible_size(double extent) { return extent >= smallest_plausible && extent <= largest_plausible; }
 
-/// The unit that an object of this size in the file's numbers was most likely drawn in: the one that brings it closest
-/// to 1 m. For what is too small the file was converted once too often: scale is then above 1.
-Unit likely_unit(double extent);
+/// The units that an object of this size in the file's numbers may have been drawn in, the likeliest first: that which
+/// brings it closest to 1 m, then those that bring it to a plausible size. For what is too small the file was converted
+/// once too often: scale is then above 1.
+std::vector<Unit> likely_units(double extent);
 
 }  // namespace frm::bake

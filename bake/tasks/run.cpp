@@ -215,7 +215,7 @@ void run_tasks(const Surface& surface, const Regions& patches, const std::vector
     std::size_t fit = cores;
     for (const std::size_t number : which) {
         const Task& task = tasks[number];
-        const std::uint64_t here = task.flow.memory_limit / std::max<std::uint64_t>(1, task.cost.bytes);
+        const std::uint64_t here = memory_limit_of(task.flow) / std::max<std::uint64_t>(1, task.cost.bytes);
         fit = std::min(fit, static_cast<std::size_t>(std::max<std::uint64_t>(1, here)));
     }
     const std::size_t workers = std::min({cores, which.size(), fit});

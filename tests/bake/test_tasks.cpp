@@ -485,9 +485,14 @@ TEST_CASE("the unit that a mesh was drawn in", "[units]") {
     CHECK(plausible_size(12));
     CHECK(!plausible_size(30));
     CHECK(!plausible_size(0.0015));
-    CHECK(likely_unit(1500).scale == 0.001);  // a paddle in millimetres
-    CHECK(likely_unit(150).scale == 0.01);    // in centimetres
-    CHECK(likely_unit(59).scale == 0.01);
-    CHECK(likely_unit(39).scale == 0.0254);    // in inches: a metre
-    CHECK(likely_unit(0.0015).scale == 1000);  // converted twice
+    CHECK(likely_units(1500).front().scale == 0.001);  // a paddle in millimetres
+    CHECK(likely_units(150).front().scale == 0.01);    // in centimetres
+    CHECK(likely_units(59).front().scale == 0.01);
+    CHECK(likely_units(39).front().scale == 0.0254);    // in inches: a metre
+    CHECK(likely_units(0.0015).front().scale == 1000);  // converted twice
+    const std::vector<Unit> units = likely_units(30);  // 0.76 m, 0.3 m and 3 cm
+    REQUIRE(units.size() == 3);
+    CHECK(units[1].scale == 0.01);
+    CHECK(units[2].scale == 0.001);
+    CHECK(likely_units(1500).size() == 2);  // 38 m were not plausible
 }

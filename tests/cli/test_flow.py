@@ -12,6 +12,7 @@ import subprocess
 import pytest
 
 from conftest import PROGRAM, names
+from gltf import CUBE, SIDES, glb
 
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 needs_matplotlib = pytest.mark.skipif(not HAS_MATPLOTLIB, reason="matplotlib is not there")
@@ -85,6 +86,43 @@ def test_a_section(good, box, refused):
     assert bare["force_mean"] in [j["force_mean"] for j in named.values()]
     refused(2, "--section|right angles", "flow", box, *direction, *SHORT, "--section", "-1,0,0")
     refused(1, "--section|normal", "flow", box, "--direction", "1,1,1", *SHORT, "--section")
+
+
+def test_a_section_of_two_bodies_goes_where_it_is_put(good, refused, tmp_path):
+    """Two cubes 0.2 m apart across the stream and at two heights: between them, where the centroid is, is nothing."""
+    mesh = tmp_path / "two.glb"
+    two = [tuple(a + b for a, b in zip(v, by)) for by in ((0, 0, 0), (0, 0.3, 0.15)) for v in CUBE]
+    mesh.write_bytes(glb(vertices=two, triangles=SIDES + [tuple(i + 8 for i in t) for t in SIDES]))
+    cut = ["flow", mesh, "--direction", "1,0,0", *SHORT, "--no-grid-error", "--section", "0,0,1"]
+    refused(1, "--section-point (0.05, 0.2, 0.125) does not cut the body", *cut)
+    one = good(*cut, "--section-point", "0,0,0.05", "--json").json
+    assert one["area"] == pytest.approx(0.1, rel=1e-6)
+    # Across z both are cut, as seen along y one behind the other, along x beside each other.
+    both = ["flow", mesh, *SHORT, "--no-grid-error", "--section", "0,1,0", "--section-point", "0,0.05,0", "--json"]
+    assert good(*both, "--direction", "1,0,0").json["area"] == pytest.approx(0.1, rel=1e-6)
+    beside = [tuple(c + (0.3 if i >= 8 and k == 1 else 0) for k, c in enumerate((CUBE + CUBE)[i])) for i in range(16)]
+    mesh.write_bytes(glb(vertices=beside, triangles=SIDES + [tuple(i + 8 for i in t) for t in SIDES]))
+    across = good(*cut, "--json").json
+    assert across["area"] == pytest.approx(0.2, rel=1e-6) and across["length"] == pytest.approx(0.4, rel=1e-6)
+    assert across["cd"] == pytest.approx(across["force_mean"][0] / (0.5 * 1000 * 0.25 * 0.2), rel=1e-5)
+    refused(2, "--section-point|--section", "flow", mesh, "--direction", "1,0,0", *SHORT, "--section-point", "0,0,0")
+
+
+def test_a_mesh_in_millimetres_can_be_scaled(good, box, tmp_path):
+    (tmp_path / "mm.glb").write_bytes(glb(vertices=[tuple(1000 * c for c in v) for v in CUBE]))
+    (tmp_path / "m.glb").write_bytes(glb())
+    run = ["--direction", "1,0,0", *SHORT, "--no-grid-error", "--json"]
+    scaled = good("flow", tmp_path / "mm.glb", "--scale", "0.001", *run)
+    assert scaled.json["force_mean"] == pytest.approx(good("flow", tmp_path / "m.glb", *run).json["force_mean"], rel=1e-4)
+    assert "glTF counts in metres" not in scaled.err
+    assert "in centimetres, add --scale 0.01 (1 m)" in good("flow", tmp_path / "mm.glb", *run).err
+
+
+def test_what_the_solver_refuses_is_said_in_options(refused, box):
+    run = ["flow", box, "--direction", "1,0,0", "--speed", "0.5"]
+    refused(1, "limit (--memory) is 1.024 MiB", *run, "--memory", "0.001")
+    refused(1, "--start-up and duration together", *run, "--start-up", "10000", "--duration", "100000", "--resolution",
+            "500", "--memory", "100000")
 
 
 def test_water_that_is_too_thick_is_refused(refused, box):

@@ -131,6 +131,15 @@ def test_scaled_and_mirrored_nodes(shown, node, volume, low):
     assert j["notes"] == []
 
 
+def test_a_scale_and_a_size_that_is_not_plausible(good, tmp_path):
+    mesh = tmp_path / "mm.glb"
+    mesh.write_bytes(glb(vertices=[tuple(1000 * c for c in v) for v in CUBE]))
+    shown = good("mesh", mesh, "--scale", "0.001", "-o", tmp_path / "m.glb", "--json").json
+    assert shown["volume"] == pytest.approx(1e-3, rel=1e-5) and shown["notes"] == []
+    assert good("mesh", tmp_path / "m.glb", "--json").json["volume"] == pytest.approx(1e-3, rel=1e-5)
+    assert "in inches --scale 0.0254 (2.54 m)" in good("mesh", mesh).out
+
+
 def test_several_shells(shown):
     j = shown(**joined((CUBE, SIDES), (moved(CUBE, (0.3, 0, 0)), FLIPPED), (moved(CUBE, (0, 0.05, 0.3)), SIDES)))
     assert j["shells"] == 3 and j["volume"] == pytest.approx(0.003) and j["cuts_between"] == 0

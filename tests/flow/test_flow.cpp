@@ -225,7 +225,11 @@ TEST_CASE("what is wrong with a case is named", "[flow]") {
                        c.viscosity = 1e-7;
                    }),
                    "reference_length"));
-    CHECK(mentions(error_with([&](FlowCase& c) { c.resolution = 500; }), "memory_limit"));
+    CHECK(mentions(error_with([&](FlowCase& c) {
+                       c.resolution = 500;
+                       c.memory_limit = std::uint64_t{8} << 30;
+                   }),
+                   "memory_limit"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.confidence = 2; }), "confidence"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.seconds = -1; }), "seconds"));
     CHECK(mentions(error_with([&](FlowCase& c) { c.turn = nan; }), "turn"));
