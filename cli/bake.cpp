@@ -80,7 +80,9 @@ void run(Options& o) {
     require_raw_place(o.raw, o.force);
     settle_unit(o.arguments);
     bake::BakePlan plan = make_plan(o.arguments, o.out);
-    const std::unique_ptr<BakePage> page = o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report);
+    const std::unique_ptr<BakePage> page =
+        o.report.empty() ? nullptr
+                         : std::make_unique<BakePage>(o.report, std::vector<std::string>{o.out, o.raw, o.work, root});
     print_plan(plan);
 
     bake::Store store(bake::work_folder(root.empty() ? o.work : root, plan), plan, print_note);

@@ -57,7 +57,7 @@ void plan(PlanOptions& o) {
     print_plan(plan);
     std::vector<std::size_t> missing;
     for (std::size_t k = 0; k < plan.tasks.size(); ++k)
-        if (!store.has(k)) missing.push_back(k);
+        if (bake::TaskResult result; !store.load(k, plan.tasks[k], result)) missing.push_back(k);
     if (!o.json) {
         std::printf("%s: %zu tasks, %zu of them to be solved\n", o.folder.c_str(), plan.tasks.size(), missing.size());
         return;
@@ -195,7 +195,8 @@ void merge(MergeOptions& o) {
                          ranges(found.missing).c_str());
         throw Unsuccessful{found.extended ? status_extended : status_missing};
     }
-    const std::unique_ptr<BakePage> page = o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report);
+    const std::unique_ptr<BakePage> page =
+        o.report.empty() ? nullptr : std::make_unique<BakePage>(o.report, std::vector<std::string>{o.out, o.raw});
     BakeRun done;
     done.json = o.json;
     done.raw = o.raw;

@@ -57,7 +57,7 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
                                  {"direction_error_rms", between.rms},
                                  {"direction_error_worst", between.worst},
                                  {"quantisation_error", map.facts.quantisation_error},
-                                 {"mlups", mlups},
+                                 {"mlups", mlups > 0 ? nlohmann::ordered_json(mlups) : nlohmann::ordered_json()},
                                  {"seconds", run.seconds}};
         std::printf("%s\n", j.dump(2).c_str());
         return;

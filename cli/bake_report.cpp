@@ -221,7 +221,8 @@ void add_sphere(Json& j, Data& data, const MadeMap& made) {
 
 }  // namespace
 
-BakePage::BakePage(const std::string& folder) : name_(folder), folder_(folder, kind()) {
+BakePage::BakePage(const std::string& folder, const std::vector<std::string>& others)
+    : name_(folder), folder_(folder, kind(), others) {
     const std::string missing = missing_report_tools();
     if (!missing.empty()) print_note("--report: " + missing + ". The bake goes on: the map and the data need neither");
 }

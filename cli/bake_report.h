@@ -26,9 +26,9 @@ struct MadeMap {
 class BakePage {
 public:
     /// To be made before the bake: throws Failure if the folder cannot be written, or holds anything but an older
-    /// report of a bake. That there are no tools for the page is noted only: they may come while the bake runs, and the data
+    /// report of a bake and what the same command writes (`others`). That there are no tools for the page is noted only: they may come while the bake runs, and the data
     /// is good without.
-    explicit BakePage(const std::string& folder);
+    BakePage(const std::string& folder, const std::vector<std::string>& others);
 
     /// Writes the data, draws the page, and gives the folder its name. Throws Failure if the data cannot be written.
     void write(const MadeMap& made);

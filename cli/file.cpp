@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "cli/command.h"
 
@@ -34,6 +36,16 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> read_file(const std::string& path) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) fail(path, EISDIR);
+    std::ifstream in(path, std::ios::binary);
+    if (!in) fail(path, errno);
+    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+    if (in.bad()) fail(path, EIO);
+    return bytes;
+}
 
 OutputFile::OutputFile(const std::string& path)
     : path_(path), target_(target_of(path)), temporary_(target_ + ".tmp" + std::to_string(getpid())) {

@@ -1,12 +1,16 @@
-// Output files appear whole or not at all.
+// Files, read whole; output files appear whole or not at all.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 namespace frm::cli {
+
+/// All of a file. Throws Failure naming the path.
+std::vector<std::uint8_t> read_file(const std::string& path);
 
 /// A file written under a neighbouring name, which commit() turns into its own; an older file stays as it was until
 /// then. What is not committed is removed. Failures are thrown as Failure naming the path.

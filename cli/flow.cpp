@@ -231,7 +231,8 @@ void run(Options& o) {
     if (o.scale == 1 && !size.empty()) notes.push_back(size);
     complete(o, surface);
     const bake::FlowPlan plan = in_options([&] { return bake::plan_flow(surface, o.flow); });
-    const std::unique_ptr<FlowReport> report = o.report.empty() ? nullptr : std::make_unique<FlowReport>(o.report);
+    const std::unique_ptr<FlowReport> report =
+        o.report.empty() ? nullptr : std::make_unique<FlowReport>(o.report, std::vector<std::string>{o.out});
     if (!plan.warning.empty()) notes.push_back(plan.warning);
     for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
     print_plan(plan, length_of(o.flow, plan, o.length));

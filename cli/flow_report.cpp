@@ -66,7 +66,10 @@ nlohmann::ordered_json describe(const FlowSetting& setting, const bake::FlowSeri
 
 }  // namespace
 
-FlowReport::FlowReport(const std::string& folder) : folder_(folder, kind()) { require_report_tools(); }
+FlowReport::FlowReport(const std::string& folder, const std::vector<std::string>& others)
+    : folder_(folder, kind(), others) {
+    require_report_tools();
+}
 
 void FlowReport::write(const FlowSetting& setting, const bake::FlowSeries& flow, const FlowResults& results) {
     const ProgressBar catches_interrupts("report");

@@ -20,8 +20,8 @@ struct FlowSetting {
 class FlowReport {
 public:
     /// To be made before the run: throws Failure if the folder cannot be written, holds anything but an older report of
-    /// a flow, or if there are no tools for the page.
-    explicit FlowReport(const std::string& folder);
+    /// a flow and what the same command writes (`others`), or if there are no tools for the page.
+    FlowReport(const std::string& folder, const std::vector<std::string>& others);
 
     /// Writes the files, draws the page, and gives the folder its name. Throws Failure.
     void write(const FlowSetting& setting, const bake::FlowSeries& flow, const FlowResults& results);

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "bake/regions/choose.h"
 #include "cli/command.h"
+#include "cli/file.h"
 #include "cli/motion.h"
 #include "cli/presets.h"
 
@@ -452,11 +451,8 @@ FrontierScene make_map_scene(const std::vector<std::string>& maps) {
     s.standard.world.surface = FRM_SURFACE_NONE;
     Knob knob{"map", "", {}};
     for (const std::string& path : maps) {
-        std::ifstream file(path, std::ios::binary);
-        if (!file) throw Failure(path + ": cannot be opened");
         Choice choice{std::filesystem::path(path).stem().string(), 0, s.standard, false};
-        choice.setup.map = std::make_shared<const std::vector<std::uint8_t>>(std::istreambuf_iterator<char>(file),
-                                                                             std::istreambuf_iterator<char>());
+        choice.setup.map = std::make_shared<const std::vector<std::uint8_t>>(read_file(path));
         knob.choices.push_back(std::move(choice));
     }
     s.standard = knob.choices.back().setup;

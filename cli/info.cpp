@@ -1,13 +1,11 @@
 // frm info, frm verify.
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "bake/map/raw.h"
 #include "cli/command.h"
+#include "cli/file.h"
 #include "cli/frm_object.h"
 #include "core/error.h"
 #include "core/map/codec.h"
@@ -100,13 +98,6 @@ bool is_recording(const std::string& path) {
                                "\x89"
                                "FRR",
                                4) == 0;
-}
-
-std::vector<std::uint8_t> read_file(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-    if (!in || std::filesystem::is_directory(path)) throw Failure(path + ": cannot be read");
-    return bytes;
 }
 
 /// The error of the map's rounding, worked out from the tables before they were rounded, must not be above what the map

@@ -36,17 +36,26 @@ void remove_left_over(const fs::path& folder) {
     for (const fs::path& path : old) fs::remove_all(path, ignored);
 }
 
+/// Whether the path is one of them, or a folder above one.
+bool holds_one_of(const std::vector<std::string>& others, const fs::path& path) {
+    return std::any_of(others.begin(), others.end(), [&](const std::string& other) {
+        std::error_code error;
+        const fs::path whole = other.empty() ? fs::path() : fs::weakly_canonical(fs::absolute(other), error);
+        return !error && std::mismatch(path.begin(), path.end(), whole.begin(), whole.end()).first == path.end();
+    });
+}
+
 [[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
     throw Failure("--report: " + path.string() + ": " + error.message());
 }
 
 }  // namespace
 
-/// An empty folder, or a report of this kind and nothing else; what other runs are at does not count.
-bool ReportFolder::may_be_replaced() const {
+/// An empty folder, or a report of this kind and nothing else; what other runs are at, and the other outputs, do not count.
+bool ReportFolder::may_be_replaced(const std::vector<std::string>& others) const {
     bool empty = true;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-        if (is_temporary(entry.path())) continue;
+        if (is_temporary(entry.path()) || holds_one_of(others, entry.path())) continue;
         empty = false;
         if (std::count(kind_.files.begin(), kind_.files.end(), entry.path().filename().string()) == 0) return false;
     }
@@ -56,14 +65,15 @@ bool ReportFolder::may_be_replaced() const {
     return text.find(kind_.format) != std::string::npos;
 }
 
-ReportFolder::ReportFolder(const std::string& folder, ReportKind kind) : kind_(std::move(kind)) {
+ReportFolder::ReportFolder(const std::string& folder, ReportKind kind, const std::vector<std::string>& others)
+    : kind_(std::move(kind)) {
     std::error_code error;
     folder_ = fs::weakly_canonical(fs::absolute(folder), error);
     if (error) fail(folder, error);
     const bool there = fs::exists(folder_, error);
     if (there && !fs::is_directory(folder_, error)) throw Failure("--report: " + folder + ": is not a folder");
     try {
-        if (there && !may_be_replaced())
+        if (there && !may_be_replaced(others))
             throw Failure("--report: " + folder + ": holds other files; name a new or an empty folder");
     } catch (const fs::filesystem_error& e) {
         fail(folder, e.code());

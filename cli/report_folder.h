@@ -17,8 +17,8 @@ struct ReportKind {
 class ReportFolder {
 public:
     /// To be made before the run: throws Failure if the folder cannot be written, or holds anything but an older report
-    /// of this kind.
-    ReportFolder(const std::string& folder, ReportKind kind);
+    /// of this kind and `others`, files and folders that the same command writes.
+    ReportFolder(const std::string& folder, ReportKind kind, const std::vector<std::string>& others);
     ~ReportFolder();
     ReportFolder(const ReportFolder&) = delete;
     ReportFolder& operator=(const ReportFolder&) = delete;
@@ -32,7 +32,7 @@ public:
     static std::vector<std::string> paths(const std::string& folder, const ReportKind& kind);
 
 private:
-    bool may_be_replaced() const;
+    bool may_be_replaced(const std::vector<std::string>& others) const;
 
     ReportKind kind_;
     std::filesystem::path folder_, temporary_;

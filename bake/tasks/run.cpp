@@ -194,17 +194,16 @@ std::string text_of(const RunState& state) {
     if (state.task.empty())
         return "waiting for " + std::to_string(state.waiting) + " of " + std::to_string(state.all) +
                " flows that another process is at";
-    std::string text = "flow " + std::to_string(std::min(state.done + 1, state.all)) + "/" + std::to_string(state.all) +
-                       ", " + state.task + ": ";
-    if (!state.recording) return text + "starting";
+    std::string text =
+        "flow " + std::to_string(std::min(state.done + 1, state.all)) + "/" + std::to_string(state.all) + ": ";
     char number[64];
     std::snprintf(number, sizeof number, "drag %.2f", state.drag_coefficient);
-    text += number;
-    if (state.statistics > 0) {
+    text += state.recording ? number : "starting";
+    if (state.recording && state.statistics > 0) {
         std::snprintf(number, sizeof number, " +- %.1f %%", 100 * state.statistics);
         text += number;
     }
-    return text;
+    return text + ", " + state.task;  // last: a narrow terminal cuts it off
 }
 
 void run_tasks(const Surface& surface, const Regions& patches, const std::vector<Task>& tasks,

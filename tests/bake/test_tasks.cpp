@@ -230,7 +230,8 @@ TEST_CASE("every option but threads and the mesh's folder makes another fingerpr
              [](BakeOptions& o) { o.sources = 7; }, [](BakeOptions& o) { o.resolution = 5; },
              [](BakeOptions& o) { o.triangles = 500; }, [](BakeOptions& o) { o.speeds = {1}; },
              [](BakeOptions& o) { o.spin = true; }, [](BakeOptions& o) { o.added_mass = false; },
-             [](BakeOptions& o) { o.symmetry = true; }, [](BakeOptions& o) { o.threshold = 0.01; }, [&](BakeOptions& o) { o.mesh = folder + "/other.glb"; }})
+             [](BakeOptions& o) { o.symmetry = true; }, [](BakeOptions& o) { o.threshold = 0.01; },
+             [&](BakeOptions& o) { o.mesh = folder + "/other.glb"; }})
         CHECK(prints.insert(with(change)).second);
 }
 
@@ -490,7 +491,7 @@ TEST_CASE("the unit that a mesh was drawn in", "[units]") {
     CHECK(likely_units(59).front().scale == 0.01);
     CHECK(likely_units(39).front().scale == 0.0254);    // in inches: a metre
     CHECK(likely_units(0.0015).front().scale == 1000);  // converted twice
-    const std::vector<Unit> units = likely_units(30);  // 0.76 m, 0.3 m and 3 cm
+    const std::vector<Unit> units = likely_units(30);   // 0.76 m, 0.3 m and 3 cm
     REQUIRE(units.size() == 3);
     CHECK(units[1].scale == 0.01);
     CHECK(units[2].scale == 0.001);

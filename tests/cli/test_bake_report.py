@@ -124,6 +124,19 @@ def test_an_older_report_is_replaced_and_other_files_are_not(good, refused, box,
     assert names(tmp_path) == ["box.frm", "report", "work"] and names(tmp_path / "report") == [*FILES, "thesis.txt"]
 
 
+@needs_matplotlib
+def test_the_map_and_its_work_may_lie_in_the_report(good, box, bare, tmp_path):
+    out = tmp_path / "report" / "maps" / "box.frm"
+    shutil.copytree(bare.parent / "work", tmp_path / "report" / "box.frm.work")
+    out.parent.mkdir()
+    again = ["bake", box, "-o", out, *SMALL, "--work", tmp_path / "report" / "box.frm.work", "--keep", "--report",
+             tmp_path / "report"]
+    for _ in range(2):
+        good(*again)
+        assert names(tmp_path / "report") == sorted([*FILES, "box.frm.work", "maps"])
+    assert out.read_bytes() == bare.read_bytes()
+
+
 def test_without_the_tools_the_map_is_written_all_the_same(frm, box, bare, tmp_path):
     shutil.copytree(bare.parent / "work", tmp_path / "work")
     # A Python that does not start is as good as none.

@@ -197,7 +197,7 @@ def solve(folder, *more, **environment):
                           env={**os.environ, **environment})
 
 
-def test_tasks_one_by_one_and_merged_are_the_local_map(frm, good, refused, planned, whole, tmp_path):
+def test_tasks_one_by_one_and_merged_are_the_local_map(frm, good, refused, box, planned, whole, tmp_path):
     out = tmp_path / "box.frm"
     outcome = frm("bake", "merge", planned, "-o", out)
     assert outcome.status == 3 and outcome.out == "0-5\n" and "6 of 6 tasks" in outcome.err
@@ -214,9 +214,11 @@ def test_tasks_one_by_one_and_merged_are_the_local_map(frm, good, refused, plann
         file.truncate(64)
     outcome = frm("bake", "merge", planned, "-o", out)
     assert outcome.status == 3 and outcome.out == "2,4\n" and "task-00004.flow" in outcome.err
+    again = good("bake", "plan", box, "-o", planned, *OPTIONS, "--json")
+    assert again.json["missing"] == "2,4" and "task-00004.flow" in again.err
     for task in (2, 4):
         good("bake", "solve", planned, "--task", task)
-    good("bake", "merge", planned, "-o", out)
+    assert good("bake", "merge", planned, "-o", out, "--json").json["mlups"] is None  # nothing was solved
     assert out.read_bytes() == whole
     assert len(list(planned.glob("*.flow"))) == 6  # what was solved stays
 

@@ -58,7 +58,8 @@ def test_verify_against_the_unrounded_tables(good, refused, full, map_path, tmp_
     assert 0 < j["quantisation_error"] <= stated * (1 + 1e-6) and j["raw_bytes"] == raw.stat().st_size
     assert "as stated" in good("verify", full, "--against", raw).out
     refused(1, "full_map.frmraw|another map", "verify", map_path, "--against", raw)
-    refused(1, "no.frmraw|cannot be read", "verify", full, "--against", tmp_path / "no.frmraw")
+    refused(1, "Is a directory", "verify", full, "--against", tmp_path)
+    refused(1, "no.frmraw|No such file", "verify", full, "--against", tmp_path / "no.frmraw")
     refused(1, "full_map.frm|not a .frmraw", "verify", full, "--against", full)
     refused(1, "damaged.frm", "verify", full, "--against", damaged(raw, tmp_path, raw.stat().st_size // 2))
 
