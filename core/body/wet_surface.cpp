@@ -21,7 +21,7 @@ struct Range {
     bool flat() const { return low == high; }
 };
 
-/// Cells of the water under a body's box, with those that its edges are interpolated from.
+/// Cells of the water under a body's box and its samples, with those that their edges are interpolated from.
 struct Under {
     Rect cells;
     bool wide = false;  ///< or not known: not looked through
@@ -48,7 +48,7 @@ float support(const float along[3], const Vec3f& half) {
 }
 
 Under under(const Body& body, const SurfaceView& surface, const GridPlacement& at) {
-    const Vec3f& half = body.def.map->clusters.half;
+    const Vec3f& half = body.def.map->clusters.sampled;
     const float x = support(at.along_x, half) + 0.51f, y = support(at.along_y, half) + 0.51f;
     constexpr float far = 1e6f;
     if (!(x < far && y < far && std::fabs(at.x) < far && std::fabs(at.y) < far))
@@ -247,14 +247,17 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
             return;
         }
     }
-    if (centre_level + range.high <= -height) return set_dry(body);
+    // Between its samples a cluster takes the water for a plane, which elsewhere on it may lie higher or lower than they.
+    // Where that decides, the clusters are asked: the force would jump by up to a hundredth of rho g V.
+    const float beyond = clusters.overshoot * (range.high - range.low);
+    if (centre_level + (range.high + beyond) <= -height) return set_dry(body);
 
     // A wholly wet body's depths are counted from its own centre's: over a closed surface an even pressure has no force
     // and no moment, and a metre of depth more would only cost digits.
-    const bool all_wet = centre_level + range.low > height;
+    const bool all_wet = centre_level + (range.low - beyond) > height;
     const float plane = centre_level + (range.flat() ? range.low : 0.0f);  // else waves are sampled
     // Under waves the clusters' planes are laid so far above the body that each counts as wet, whatever their slopes.
-    const float above = 4 * clusters.radius + (4 * (range.high - range.low) - range.low) * inverse;
+    const float above = 4 * clusters.radius + (4 * (range.high - range.low) + beyond - range.low) * inverse;
     const bool at_once = all_wet && range.flat() && (skip & skip_wet_bodies) != 0;
     const float rest = !all_wet ? plane * inverse : at_once ? 0.0f : above;
     const BodyLevel level{rest, {up.x, up.y, up.z}, inverse};
@@ -270,6 +273,7 @@ void measure_wet_surface(Body& body, const SurfaceView& surface, const Fluid& fl
         wet = clipped_surface(body, level, surface.field && !range.flat() ? &grid : nullptr, at,
                               range.bare ? bed : -infinite);
         body.wetness = Wetness::partly;
+        if (body.wet_sources == 0) return set_dry(body);
         if (all_wet) set_sources(body, 1), body.wetness = Wetness::whole;
     }
 

@@ -236,6 +236,17 @@ void Clusters::build(const Map& map) {
     }
     region_begin.push_back(static_cast<std::uint32_t>(clusters));
     first_batch.push_back(static_cast<std::uint32_t>(batches.size()));
+
+    sampled = half;
+    overshoot = 0;
+    for (std::size_t k = 0; k < clusters; ++k) {
+        const ClusterBlock& block = blocks[k / kernel_lanes];
+        const std::size_t lane = k % kernel_lanes;
+        for (int c = 0; c < 3; ++c)
+            for (const auto& point : block.point[c]) sampled[c] = std::max(sampled[c], std::fabs(point[lane]));
+        overshoot = std::max(overshoot, block.extent[0][lane] * block.per_span[0][lane] +
+                                            block.extent[1][lane] * block.per_span[1][lane]);
+    }
 }
 
 }  // namespace frm

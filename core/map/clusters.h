@@ -28,6 +28,10 @@ struct Clusters {
     Vec3f centre;      ///< of the box around the surface, body frame
     Vec3f half;        ///< half of that box
     float radius = 0;  ///< of a sphere around `centre` that holds the surface
+    Vec3f sampled;     ///< half of a box around `centre` that holds the surface and where its clusters sample the water
+    /// How far beyond its four samples a cluster's plane may lie somewhere on the cluster, at most: a share of the difference
+    /// between the largest and the smallest of them.
+    float overshoot = 0;
     std::pmr::vector<OnLines<TriangleBatch>>
         batches;                                  ///< the triangles; the last of a cluster is filled up with empty ones
     std::pmr::vector<std::uint32_t> first_batch;  ///< [clusters + 1]

@@ -328,6 +328,57 @@ TEST_CASE("in waves twice as long as the body, buoyancy is right to 0.1 % rms", 
     }
 }
 
+TEST_CASE("in waves a body becomes dry, and wholly wet, without a jump", "[buoyancy]") {
+    // Between its samples a cluster's plane may lie beyond the highest and the lowest water under the body: force jumped by
+    // up to 1 % of rho g V, ratios by 0.2.
+    const auto map = test::map_of(test::fine_box({0.2, 0.04, 0.3}, 0.05), 12);
+    const double whole = rho_g * 0.2 * 0.04 * 0.3;
+    constexpr int cells = 96;
+    constexpr float cell = 0.0125f;
+    struct Felt {
+        Vec3d force;
+        std::vector<float> ratios;
+        bool any, all;
+    };
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (int n = 0; n < 12; ++n) {
+        const double length = n % 2 ? 0.6 : 1.2, k = 2 * pi / length, turn = uniform(random);
+        std::vector<float> height;
+        for (int j = 0; j < cells; ++j)
+            for (int i = 0; i < cells; ++i)
+                height.push_back(static_cast<float>(0.2 / k * std::cos(k * cell * i + 3 * turn)));
+        const auto rotation = test::turned({1, 0.3 * turn, 0.2}, n % 3 == 0 ? pi / 2 : 3 * uniform(random));
+        const auto feel = [&](double z) {
+            World world = test::world_of();
+            world.create_water(test::water_of(cells, cell, 0.5f));
+            world.set_height(height.data());
+            Body& body = world.create_body(body_of(map, {0.01 * turn, 0.02, z}, rotation));
+            world.tick(1e-6f);
+            Felt felt{Vec3d(body.forces.buoyancy.force), {}, false, true};
+            for (const SourceState& source : body.sources) {
+                felt.ratios.push_back(source.wet_ratio);
+                felt.any = felt.any || source.wet_ratio > 0, felt.all = felt.all && source.wet_ratio >= 1;
+            }
+            return felt;
+        };
+        for (const bool becomes_dry : {true, false}) {
+            double low = becomes_dry ? 0 : -0.35, high = becomes_dry ? 0.35 : 0;
+            const auto below = [&](const Felt& felt) { return becomes_dry ? felt.any : felt.all; };
+            REQUIRE((below(feel(low)) && !below(feel(high))));
+            while (high - low > 1e-7) {
+                const double z = 0.5 * (low + high);
+                (below(feel(z)) ? low : high) = z;
+            }
+            const Felt one = feel(low), other = feel(high);
+            INFO(n << (becomes_dry ? " dry at " : " whole at ") << low);
+            CHECK(frm::length(one.force - other.force) < 1e-4 * whole);
+            for (std::size_t l = 0; l < one.ratios.size(); ++l)
+                CHECK(std::fabs(one.ratios[l] - other.ratios[l]) < 1e-3f);
+        }
+    }
+}
+
 TEST_CASE("in waves buoyancy is the same 10 km away", "[buoyancy]") {
     const auto map = test::map_of(test::fine_box({0.3, 0.2, 0.5}, 0.05));
     const auto force = [&](double x, double y, double z) {
