@@ -18,18 +18,28 @@ Water::Water(const WaterDef& def, std::pmr::memory_resource* memory)
       snapshots(field.cells(), memory),
       def_(def),
       pressure_(field.cells(), 0.0f, memory),
+      owed_(field.cells(), 0.0f, memory),
       scratch_(static_cast<std::size_t>(field.stride() * def.field.ny), 0.0f, memory),
       room_(def.field, memory) {}
 
 void Water::set_height(const float* height) {
     field.set_heights(height);
+    pay_pressure();
     starts_ = true;
     published_ = false;
 }
 
-void Water::set_pressure(const float* pressure) {
+void Water::set_pressure(const float* pressure, float behind) {
+    for (std::size_t k = 0; behind > 0 && k < owed_.size(); ++k)
+        owed_[k] += ((pressed_ ? pressure_[k] : 0.0f) - (pressure ? pressure[k] : 0.0f)) * behind;
+    owes_ = owes_ || behind > 0;
     pressed_ = pressure != nullptr;
     if (pressed_) std::memcpy(pressure_.data(), pressure, pressure_.size() * sizeof(float));
+}
+
+void Water::pay_pressure() {
+    if (owes_) std::fill(owed_.begin(), owed_.end(), 0.0f);
+    owes_ = false;
 }
 
 bool Water::offer_snapshot(std::uint64_t tick, double time) {

@@ -28,10 +28,14 @@ public:
     /// True once after set_height: the next step starts from rest.
     bool take_start() { return std::exchange(starts_, false); }
     bool starts() const { return starts_; }
-    /// Null takes the pressure away.
-    void set_pressure(const float* pressure);
+    /// Null takes the pressure away. The water was last stepped `behind` s ago: so long the old one has pressed, and the next
+    /// step, which the new one pushes for all of its time, owes the difference.
+    void set_pressure(const float* pressure, float behind);
     /// Null while the host presses nowhere.
     const float* pressure() const { return pressed_ ? pressure_.data() : nullptr; }
+    /// Pa s; null where nothing is owed.
+    const float* owed_pressure() const { return owes_ ? owed_.data() : nullptr; }
+    void pay_pressure();
 
     /// As many floats as the field's heights take, for whoever is at work on a tick (SurfaceView::scratch).
     float* scratch() { return scratch_.data(); }
@@ -47,8 +51,8 @@ public:
 private:
     WaterDef def_;
     double last_snapshot_ = 0, last_read_ = 0;  ///< s
-    bool published_ = false, pressed_ = false, starts_ = false;
-    std::pmr::vector<float> pressure_, scratch_;
+    bool published_ = false, pressed_ = false, owes_ = false, starts_ = false;
+    std::pmr::vector<float> pressure_, owed_, scratch_;
     Field::Room room_;
 };
 

@@ -19,6 +19,7 @@ void hash_water(StateHash& hash, const Water& water) {
     hash.value(static_cast<std::uint32_t>(water.starts()));
     water.field.hash(hash);
     if (water.pressure()) hash.words(water.pressure(), water.field.cells());
+    if (water.owed_pressure()) hash.words(water.owed_pressure(), water.field.cells());
 }
 
 void hash_body(StateHash& hash, const Body& body) {

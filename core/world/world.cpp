@@ -32,7 +32,7 @@ void forget_forces(Body& body) {
 
 World::World(const WorldDef& def, std::uint32_t threads, std::pmr::memory_resource* memory)
     : def_(def), threads_(threads), memory_(memory), bodies_(memory), pushes_(memory) {
-    pushes_.reserve(1);
+    pushes_.reserve(2);
 }
 
 Water& World::create_water(const WaterDef& def) {
@@ -71,22 +71,13 @@ void World::set_height(const float* height) {
     if (observer_) observer_->height_set(*this, height, water_->field.cells());
 }
 
-// Where the water waits, its next step is pushed by the new pressure for all of its time: what the old one pushed by then, and
-// the new one did not, is made up for at once.
 void World::set_pressure(const float* pressure) {
-    const Rect all{0, 0, water_->field.def().nx, water_->field.def().ny};
-    const auto push = [&](float time) {
-        const float* const p = water_->pressure();
-        if (p && time != 0) water_->field.push({p, all.i1, all.j1, all, 0, 0, time / def_.fluid.density});
-    };
-    push(clock_.behind());
-    water_->set_pressure(pressure);
-    push(-clock_.behind());
+    water_->set_pressure(pressure, clock_.behind());
     if (observer_) observer_->pressure_set(*this, pressure, pressure ? water_->field.cells() : 0);
 }
 
 Body& World::create_body(const BodyDef& def, std::uint32_t id) {
-    pushes_.reserve(bodies_.size() + 2);
+    pushes_.reserve(bodies_.size() + 3);
     auto body = std::allocate_shared<Body>(std::pmr::polymorphic_allocator<Body>(memory_), def, id, memory_);
     if (water_) give_footprint(*body);
     bodies_.push_back(std::move(body));
@@ -339,6 +330,8 @@ void World::step_waves(const WaveTime& waves) {
     pushes_.clear();
     const Rect all{0, 0, field.def().nx, field.def().ny};
     if (water_->pressure()) pushes_.push_back({water_->pressure(), all.i1, all.j1, all, 0, 0, push});
+    if (const float* owed = water_->owed_pressure())
+        pushes_.push_back({owed, all.i1, all.j1, all, 0, 0, push / waves.time});
     for (const auto& body : bodies_) {
         if (body->stays_dry) continue;
         body->footprint->gather_pressure(most);
@@ -359,6 +352,7 @@ void World::step_waves(const WaveTime& waves) {
         if (!own_waves) continue;
         for (const auto& body : bodies_) advance_own(*body->footprint, step, gravity, steps);
     }
+    water_->pay_pressure();
 }
 
 }  // namespace frm

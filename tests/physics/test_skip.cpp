@@ -199,6 +199,40 @@ TEST_CASE("a pressure that is set again, or while the water waits, counts for it
     CHECK(length(force(*bodies[0]) - force(*bodies[1])) < 1e-4 * length(force(*bodies[0])));
 }
 
+TEST_CASE("a pressure that is set while the water waits is not felt the wrong way round", "[skip]") {
+    // Over a box at rest, set in the middle of a wait: the box felt 3.6 mN less at once, where without the rule it feels the
+    // water rise around it, 24 mN more after 20 ticks.
+    std::vector<float> p(64 * 64);
+    for (std::int32_t j = 0; j < 64; ++j)
+        for (std::int32_t i = 0; i < 64; ++i) {
+            const float x = (static_cast<float>(i) - 31.5f) / 6, y = (static_cast<float>(j) - 31.5f) / 6;
+            p[static_cast<std::size_t>(64 * j + i)] = 490 * std::exp(-x * x - y * y);
+        }
+    double change[2][20];
+    for (const bool waits : {true, false}) {
+        World world = test::world_of(skipping(waits ? skip_default : skip_default & ~skip_wave_steps));
+        Water& water = world.create_water(test::water_of(64, 0.025f, 0.5f));
+        Body& body = world.create_body(body_of(plate_map(), {0, 0, -0.05}));
+        for (int t = 0; t < 14; ++t) world.tick(0.0002f);
+        const auto before = static_cast<double>(force(body).z);
+        const float* const u = water.field.velocity_x_row(31);
+        const std::vector<float> still(u, u + 64);
+        world.set_pressure(p.data());
+        CHECK(std::equal(still.begin(), still.end(), u));
+        for (double& c : change[waits]) {
+            world.tick(0.0002f);
+            c = static_cast<double>(force(body).z) - before;
+        }
+    }
+    const double all = change[0][19];
+    CHECK(std::fabs(all) > 1e-3);
+    for (int t = 0; t < 20; ++t) {
+        INFO("tick " << t << ": " << change[1][t] << " N, " << change[0][t] << " N without waits");
+        CHECK(std::fabs(change[1][t] - change[0][t]) < 0.4 * std::fabs(all));  // by the stairs of its steps
+        CHECK(change[1][t] * all > -1e-3 * all * all);
+    }
+}
+
 TEST_CASE("water that is no longer finite is made calm, and the tick says so, without a body too", "[waves]") {
     World world = test::world_of();
     Water& water = world.create_water(test::water_of(32, 0.025f, 0.5f));
