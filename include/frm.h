@@ -129,8 +129,8 @@ typedef struct frm_position {
     double x, y, z; /* m */
 } frm_position;
 
-/* A rotation from the body's frame to the world's. Need not be exactly of length 1: it is normalised. Zero is an
- * error. */
+/* A rotation from the body's frame to the world's. Need not be exactly of length 1: it is normalised. A length
+ * that is not between 1e-6 and 1e6 is an error. */
 typedef struct frm_quaternion {
     float x, y, z, w;
 } frm_quaternion;
@@ -321,10 +321,11 @@ typedef enum frm_skip {
     FRM_SKIP_CALM_WATER = 16,
     /* Wave steps shorter than a quarter of the stable one, and than 5 ms: ticks share one. Between steps heights and
      * velocities go on by Eqs. 7 and 8, and what bodies displace rises at once. 0.1 % of buoyancy and resistance in
-     * waves of 32 cells. Not with forced velocity (without FRM_MODEL_DISPLACEMENT). */
+     * waves of 32 cells; strokes of a plate at 5 kHz 0.6 % rms of the largest buoyancy (docs/model.md, section 7).
+     * Not with forced velocity (without FRM_MODEL_DISPLACEMENT). */
     FRM_SKIP_WAVE_STEPS = 32,
     /* What a body does to the water where less than a thousandth of it would be seen at the surface: deeper than 121
-     * cells. */
+     * cells, or so far outside the water that nothing of it reaches. */
     FRM_SKIP_DEEP_BODIES = 64,
     /* Laying out anew the volume of a body that has moved less than a thousandth of a cell since: its displaced volume
      * is off by less than that times the area of its waterline. */
@@ -349,10 +350,13 @@ typedef struct frm_world_def {
     uint32_t skip;     /* frm_skip; default FRM_SKIP_DEFAULT */
     float error_budget; /* N, 0 to 1e9: what a body's resistance may be off for the sake of speed. The coarsest clusters
                            of sources are looked up whose bound is within it; every source of a body that pushes the
-                           water or is in water that moves. Default 0: every source, always */
-    float time_budget; /* us, 0 to 1e6: what the resistance of all such bodies may take, by a fixed price a lookup (so
-                          that the bits are the same anywhere). Clusters are made coarser until it is met, at any error.
-                          Default 0: as long as it takes */
+                           water, is in water that moves, or is partly wet and turns, if its map knows spin. Default 0:
+                           every source, always */
+    float time_budget; /* us, 0 to 1e6: what the resistance of all bodies may take, by a fixed price a lookup (so that
+                          the bits are the same anywhere), in equal shares of those at or under the calm level. Clusters
+                          are made coarser until it is met, at any error, but for the bodies above; one body costs 75 ns
+                          at least. over_budget_bodies tells what went over. Buoyancy and waves do not count. Default 0:
+                          as long as it takes */
     uint32_t reserved;
 } frm_world_def;
 
@@ -369,12 +373,15 @@ typedef struct frm_world_stats {
     uint32_t dry_bodies;       /* not looked at, no wave could reach them */
     uint32_t whole_bodies;     /* wholly wet, by one evaluation */
     uint32_t still_bodies;     /* whose displaced volume was kept */
-    uint32_t deep_bodies;      /* too deep to push the water */
+    uint32_t deep_bodies;      /* too deep, or too far outside, to push the water */
     uint32_t coarse_bodies;    /* by clusters of sources, within a budget */
     uint32_t frictionless_sources; /* wet sources without friction */
     uint32_t steady_sources;   /* wet sources by their mean alone */
     uint32_t active_cells;     /* of the water that were stepped; all others are calm */
     uint64_t water_waits;      /* ticks since the beginning in which the water was not stepped, but later */
+    uint32_t over_budget_bodies; /* in the last tick: whose resistance cost more than their share of time_budget, or is
+                                    further off than error_budget because of it */
+    uint32_t reserved;
 } frm_world_stats;
 
 /* Fills a def with defaults; writes at most `size` bytes. [any] */
@@ -401,8 +408,8 @@ FRM_API frm_status FRM_CALL frm_world_tick(frm_world world, float dt);
 /* Counters. [realtime] */
 FRM_API frm_status FRM_CALL frm_world_get_stats(frm_world world, frm_world_stats *stats);
 
-/* A 64-bit hash of everything that decides the world's future: water, poses, map times, forces. Equal histories
- * give equal hashes on every build. Takes time in proportion to the water's cells. [owner] */
+/* A 64-bit hash of what decides the world's future: water, poses, map times, forces. Equal histories give equal
+ * hashes on every build. Takes time in proportion to the water's cells. [owner] */
 FRM_API frm_status FRM_CALL frm_world_hash(frm_world world, uint64_t *hash);
 
 /* ---- Water ---------------------------------------------------------------------------------------------------- */
@@ -470,9 +477,9 @@ FRM_API frm_status FRM_CALL frm_water_read(frm_water water, frm_water_state *sta
  * ticking thread and never makes it wait. [any] */
 FRM_API frm_status FRM_CALL frm_water_read_snapshot(frm_water water, frm_water_state *state);
 
-/* Sets heights (m, at cell centres, within +-depth) and lets the water rest. `count` must be nx * ny. The heights are those
- * with the bodies where they are: none of them makes a splash, and one that is destroyed takes along only what it has
- * displaced since. [owner] */
+/* Sets heights (m, at cell centres, within +-depth) and lets the water rest. `count` must be nx * ny. The heights are
+ * those with the bodies where they are: none of them makes a splash, and one that is destroyed takes along only what
+ * it has displaced since. [owner] */
 FRM_API frm_status FRM_CALL frm_water_set_height(frm_water water, const float *height, uint64_t count);
 
 /* Sets a pressure (Pa, at cell centres) that pushes up on the surface in every tick until it is changed: p of

@@ -64,7 +64,7 @@ Pose Axes::pose_in(const frm_pose& pose, const char* what) const {
     const frm_quaternion& r = pose.rotation;
     const float squared = r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w;
     if (!(squared > 1e-12f && squared < 1e12f))
-        throw Error(FRM_ERROR_ARGUMENT, "%s.rotation is not finite, or its length is zero", what);
+        throw Error(FRM_ERROR_ARGUMENT, "%s.rotation is not finite, or its length is not between 1e-6 and 1e6", what);
     const float norm = std::sqrt(squared);
     Quat<float> q{r.x / norm, r.y / norm, r.z / norm, r.w / norm};
     if (axes_ != FRM_AXES_Z_UP_RIGHT) q = world_ * q * conjugate(body_);

@@ -120,6 +120,7 @@ frm_status FRM_CALL frm_world_get_stats(frm_world world, frm_world_stats* stats)
         out.still_bodies = skipped.still_bodies;
         out.deep_bodies = skipped.deep_bodies;
         out.coarse_bodies = skipped.coarse_bodies;
+        out.over_budget_bodies = skipped.over_budget_bodies;
         out.water_waits = skipped.water_waits;
         if (w.water()) out.active_cells = static_cast<std::uint32_t>(w.water()->field.active_cells());
         write_struct(stats, out);

@@ -109,7 +109,7 @@ struct Body {
     struct {
         std::uint32_t groups = 0;  ///< 0: every source by itself
         float error = 0;           ///< N, the bound on what that costs
-        bool over_budget = false;  ///< the time did not suffice for the error
+        bool over_budget = false;  ///< it costs more than the time budget, or is further off than the error budget
     } detail;
     float map_time_owed = 0;  ///< s, to all wet sources, of ticks that looked up groups
     Budget budget;            ///< of this tick

@@ -122,6 +122,10 @@ void look_up_blocks(const Body& body, const Level& level, const LookupMotion& m,
 
 }  // namespace
 
+bool is_dear(const Body& body, std::size_t lookups) {
+    return body.budget.time > 0 && nanoseconds(lookups) > 1000 * body.budget.time;
+}
+
 const Level* choose_level(Body& body, const LookupMotion& motion) {
     const Map& map = *body.def.map;
     const float time = 1000 * body.budget.time, newtons = body.budget.error;
@@ -134,13 +138,14 @@ const Level* choose_level(Body& body, const LookupMotion& motion) {
         chosen = &level;
         body.detail = {level.groups, level.error(m, map.tables.reach), false};
         if (!body.all_wet()) body.detail.error += wetness_error(body, level, m);
+        body.detail.over_budget = is_dear(body, level.groups);
         if (newtons > 0 && body.detail.error <= newtons) return chosen;
     }
     if (!chosen || !(time > 0) || nanoseconds(map.sources.size()) <= time) {
         body.detail = {};
         return nullptr;
     }
-    body.detail.over_budget = newtons > 0;
+    body.detail.over_budget = body.detail.over_budget || newtons > 0;
     return chosen;
 }
 

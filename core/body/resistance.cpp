@@ -156,6 +156,7 @@ void look_up_resistance(Body& body, const SurfaceView& surface, const Fluid& flu
             map.tables.friction_sum * motion.friction <=
             skip_share * map.tables.peak_pressure * motion.pressure * largest_ratio(body, water, motion);
 
+    body.detail.over_budget = body.wet_sources > 0 && is_dear(body, body.wet_sources);
     body.streams.motion = motion;
     const LookupTable table = lookup_table(map);
     const auto look_up_block = kernels().look_up_block;

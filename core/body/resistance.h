@@ -8,6 +8,9 @@ namespace frm {
 /// The part of sums that begins at lane `first` (0 pressure, 4 friction), turned to the world.
 Wrench wrench_of(const Body& body, const LookupSum& sum, int first);
 
+/// Whether so many lookups cost more than the body's share of the time budget.
+bool is_dear(const Body& body, std::size_t lookups);
+
 /// Which level of detail keeps the body's budgets; null: every source by itself. Fills body.detail.
 const Level* choose_level(Body& body, const LookupMotion& motion);
 

@@ -17,6 +17,11 @@ bool finite(const Forces& f) {
     return std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z);
 }
 
+/// No point of the body is lower, m.
+double lowest(const Body& body) {
+    return body.def.pose.position.z + static_cast<double>(dot(body.rotation.row2, body.centre()) - body.radius());
+}
+
 void forget_forces(Body& body) {
     body.forces = {};
     body.displaced_volume = body.wet_area = body.relative_speed = 0;
@@ -193,8 +198,7 @@ SurfaceView World::view_from(const Body& body, float dt, const WaveTime& waves) 
 // Over water a body is dry where it hangs higher than the water is deep, unless a wave is known to be as high.
 bool World::cannot_be_wet(const Body& body) const {
     if (def_.everywhere) return false;
-    const float centre = dot(body.rotation.row2, body.centre());
-    const double low = body.def.pose.position.z + static_cast<double>(centre - body.radius()) - def_.level;
+    const double low = lowest(body) - def_.level;
     if (!water_) return low > 0;
     return low > static_cast<double>(water_->def().field.depth) && !water_->field.has_high_waves();
 }
@@ -221,11 +225,15 @@ void World::place_body(Body& body, float dt, const WaveTime& waves) {
     if (!body.footprint || body.stays_dry) return;
     const bool spread = (def_.model & model_displacement) != 0;
     const auto level = static_cast<float>(def_.level - body.def.pose.position.z);
-    const bool deep = spread && def_.skip & skip_deep_bodies &&
-                      body.footprint->is_deep(level - dot(body.rotation.row2, body.centre()) - body.radius());
     const Vec3f centre = body.rotation.to_world(body.centre());
     const GridOrigin at = water_->origin_at(body.def.pose.position.x + static_cast<double>(centre.x),
                                             body.def.pose.position.y + static_cast<double>(centre.y));
+    // Or nothing of its window lies over the water: it is as one too deep to be seen there.
+    const std::int32_t reach = body.footprint->size();
+    const Rect near{at.i - reach, at.j - reach, at.i + reach, at.j + reach};
+    const bool deep = spread && def_.skip & skip_deep_bodies &&
+                      (near.clipped(water_->field.def().nx, water_->field.def().ny).empty() ||
+                       body.footprint->is_deep(level - dot(body.rotation.row2, body.centre()) - body.radius()));
     const GridOrigin origin = water_->origin_at(body.def.pose.position.x, body.def.pose.position.y);
     body.footprint->begin(at.i, at.j, origin, spread ? &water_->field : nullptr);
     body.pushes = !deep;
@@ -262,6 +270,7 @@ void World::tick_body(Body& body, float dt, float time_budget, const WaveTime& w
     if (body.account && def_.model & model_displacement) body.account->drag_work += work_of_drag(body, dt);
     skipped_.whole_bodies += body.by_one_evaluation;
     skipped_.coarse_bodies += body.detail.groups > 0;
+    skipped_.over_budget_bodies += body.detail.over_budget;
     sum_forces(body, def_.fluid);
 }
 
@@ -270,13 +279,13 @@ bool World::tick(float dt) {
     const bool waits = water_ && waves.steps == 0;
     float time_each = 0;
     if (def_.time_budget > 0) {
-        std::uint32_t wet = 0;  // in the last tick
-        for (const auto& body : bodies_) wet += body->wet_sources > 0;
+        std::uint32_t wet = 0;  // in the last tick, or it may be in this one
+        for (const auto& body : bodies_) wet += body->wet_sources > 0 || def_.everywhere || lowest(*body) < def_.level;
         time_each = def_.time_budget / static_cast<float>(std::max(1u, wet));
     }
 
     bool diverged = false;
-    skipped_ = {0, 0, 0, 0, 0, skipped_.water_waits + waits};
+    skipped_ = {0, 0, 0, 0, 0, 0, skipped_.water_waits + waits};
     for (const auto& body : bodies_) place_body(*body, dt, waves);
     for (const auto& body : bodies_) {
         tick_body(*body, dt, time_each, waves);

@@ -49,7 +49,8 @@ public:
     std::uint32_t substeps() const { return substeps_; }
     /// What the last tick left out (frm_world_stats), and water_waits since the beginning.
     struct Skipped {
-        std::uint32_t dry_bodies = 0, whole_bodies = 0, still_bodies = 0, deep_bodies = 0, coarse_bodies = 0;
+        std::uint32_t dry_bodies = 0, whole_bodies = 0, still_bodies = 0, deep_bodies = 0, coarse_bodies = 0,
+                      over_budget_bodies = 0;
         std::uint64_t water_waits = 0;
     };
     const Skipped& skipped() const { return skipped_; }

@@ -151,7 +151,7 @@ TEST_CASE("a time budget decides by the number of lookups", "[detail]") {
         CHECK(pair.body->detail.groups >= before);
         CHECK(pair.body->detail.groups > 0);
         CHECK(pair.error() <= num(pair.body->detail.error));
-        CHECK(!pair.body->detail.over_budget);
+        CHECK(pair.body->detail.over_budget == (us < 0.075f));  // what one lookup costs
         before = pair.body->detail.groups;
     }
     CHECK(before == 16);
@@ -164,6 +164,37 @@ TEST_CASE("a time budget decides by the number of lookups", "[detail]") {
     CHECK(both.body->detail.over_budget);
     CHECK(both.body->detail.groups > 0);
     CHECK(both.body->detail.error > 1e-6f);
+}
+
+TEST_CASE("bodies that go under all at once stay within the time budget, and the world tells who does not",
+          "[detail]") {
+    const auto map = test::map_of(test::fine_box({0.2, 0.1, 0.3}, 0.05), 40, 3, 32);
+    const auto dive = [&](float us, const std::shared_ptr<const Map>& of, double z, bool water) {
+        WorldDef def;
+        def.time_budget = us;
+        World world = test::world_of(def);
+        if (water) world.create_water(test::water_of(64, 0.025f, 0.5f));
+        std::vector<Body*> bodies;
+        for (int i = 0; i < 20; ++i) bodies.push_back(&world.create_body(body_of(of, {3.0 + i, 0, 1})));
+        world.tick(0.002f);
+        for (Body* body : bodies) world.set_motion(*body, {{3.0 + body->id, 0, z}, {}}, {{0.5f, 0, 0}, {1, 0, 0}});
+        world.tick(0.002f);
+        return world.skipped();
+    };
+    auto skipped = dive(2, map, -1, false);  // 0.1 us each
+    CHECK(skipped.coarse_bodies == 20);
+    CHECK(skipped.over_budget_bodies == 0);
+    skipped = dive(1, map, -1, false);
+    CHECK(skipped.coarse_bodies == 20);
+    CHECK(skipped.over_budget_bodies == 20);
+    // Outside the water nothing that they do reaches it.
+    skipped = dive(2, map, -1, true);
+    CHECK(skipped.coarse_bodies == 20);
+    CHECK(skipped.over_budget_bodies == 0);
+    // Partly wet, with what spin adds to each source.
+    skipped = dive(2, std::make_shared<Map>(test::full_map(test::fine_box({0.2, 0.1, 0.3}, 0.05), 24, 8)), 0, false);
+    CHECK(skipped.coarse_bodies == 0);
+    CHECK(skipped.over_budget_bodies == 20);
 }
 
 TEST_CASE("sources are there to be looked at, and their map time goes on, while groups are looked up", "[detail]") {

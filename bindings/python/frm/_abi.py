@@ -205,7 +205,7 @@ class WorldStats(Struct):
                 ("water_substeps", c_uint32), ("dry_bodies", c_uint32), ("whole_bodies", c_uint32),
                 ("still_bodies", c_uint32), ("deep_bodies", c_uint32), ("coarse_bodies", c_uint32),
                 ("frictionless_sources", c_uint32), ("steady_sources", c_uint32), ("active_cells", c_uint32),
-                ("water_waits", c_uint64)]
+                ("water_waits", c_uint64), ("over_budget_bodies", c_uint32), ("reserved", c_uint32)]
 
 
 # ---- Water -------------------------------------------------------------------------------------------------
