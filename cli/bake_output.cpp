@@ -27,6 +27,11 @@ bool begins_with(const std::string& path, const Byte (&magic)[size]) {
     return file.gcount() == 0 || (file.gcount() == size && std::memcmp(head, magic, size) == 0);
 }
 
+/// Null where it is not known.
+nlohmann::ordered_json known(double value) {
+    return value > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
 /// The notes and what is on standard output.
 void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& report, const std::string& out,
          std::size_t bytes, const BakeRun& run) {
@@ -54,10 +59,10 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
                                  {"reynolds", map.facts.reynolds},
                                  {"reynolds_solved", map.facts.reynolds_solved},
                                  {"uncertainty", worst},
-                                 {"direction_error_rms", between.rms},
-                                 {"direction_error_worst", between.worst},
+                                 {"direction_error_rms", known(between.rms)},
+                                 {"direction_error_worst", known(between.worst)},
                                  {"quantisation_error", map.facts.quantisation_error},
-                                 {"mlups", mlups > 0 ? nlohmann::ordered_json(mlups) : nlohmann::ordered_json()},
+                                 {"mlups", known(mlups)},
                                  {"seconds", run.seconds}};
         std::printf("%s\n", j.dump(2).c_str());
         return;

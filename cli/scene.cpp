@@ -1,5 +1,6 @@
 #include "cli/scene.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -126,6 +127,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& maps, 
     if (scene.water) apply_preset(wanted, *scene.water);
 
     for (const std::string& map : maps) add_map(map, scene.maps);
+    const std::map<std::string, std::string> given = scene.maps;
     for (const auto& [name, file] : j.texts("maps"))
         scene.maps.emplace(name, (std::filesystem::path(path).parent_path() / file).string());
     for (const JsonReader& one : j.list("bodies")) {
@@ -134,6 +136,9 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& maps, 
         if (!scene.maps.count(map))
             one.fail("map", "\"" + map + "\" is not in .maps; give it there or as --map " + map + "=FILE");
     }
+    for (const auto& [name, file] : given)
+        if (std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const auto& body) { return body.map == name; }))
+            throw Failure("--map " + name + "=" + file + ": no body of " + path + " has a map of that name");
     return scene;
 }
 

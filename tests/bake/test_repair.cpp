@@ -355,6 +355,15 @@ TEST_CASE("cuts are found and said, not refused", "[repair][cuts]") {
     CHECK(crossing.cuts.within == 0);
     CHECK(crossing.cuts.between > 3);
     CHECK(mentions(crossing.notes, "pieces run into each other"));
+    // Mirror images of each other: edges meet edges all round.
+    const Surface round = test::icosphere(0.05, 3);
+    for (const Vec3d& by : {Vec3d(0.03, 0, 0), Vec3d(0.05, 0, 0), Vec3d(0, 0.04, 0)}) {
+        const Repaired mirrored = repair(joined(round, test::moved(round, by)), "two");
+        CHECK(mirrored.cuts.between > 20);
+        CHECK(mentions(mirrored.notes, "pieces run into each other"));
+    }
+    for (const Vec3d& by : {Vec3d(0.1, 0, 0), Vec3d(0.100001, 0, 0)})  // they touch in a corner, or do not
+        CHECK(repair(joined(round, test::moved(round, by)), "two").notes.empty());
     for (const Vec3d& by : {Vec3d(1, 0.3, 0.2), Vec3d(1, 1, 0), Vec3d(3, 0, 0)})  // a face, an edge, nothing in common
         CHECK(repair(joined(box, test::moved(box, by)), "two").notes.empty());
 }

@@ -295,13 +295,14 @@ def flow(bake: Bake, one: dict) -> str:
 def speed_key() -> str:
     """The colours of the slices."""
     figure = Figure(figsize=(10.4, 0.5))
-    axes = figure.add_axes((0.3, 0.5, 0.4, 0.3))
+    axes = figure.add_axes((0.46, 0.5, 0.4, 0.3))
     axes.imshow(np.linspace(0, _FASTEST, 200)[None], aspect="auto", cmap=SPEED, norm=Normalize(0, _FASTEST),
                 extent=(0, _FASTEST, 0, 1))
     axes.grid(False)
     axes.set_yticks([])
     axes.tick_params(labelsize=7.5, length=2)
-    figure.text(0.29, 0.62, "speed, shares of the stream's (of a spin: the fastest point's)", ha="right", va="center", fontsize=8)
+    figure.text(0.45, 0.62, "speed, shares of the stream's (of a spin: the fastest point's)", ha="right", va="center",
+                fontsize=8)
     for spine in axes.spines.values():
         spine.set_color(RULE)
     return png(figure, 120)

@@ -107,10 +107,10 @@ def _head(bake: Bake) -> str:
     said = (f"In a stream of {quantity(o['speed'], 'm/s')} from a direction that was not solved, the map's mean force "
             f"is off by about <b>{_percent(e['direction_rms'])}</b> of the largest (at worst "
             f"{_percent(e['direction_worst'])}); the mean drag of the flows themselves is known to "
-            f"<b>{_percent(e['uncertainty'])}</b> or better, not counting the grid.")
+            f"<b>{_percent(e['uncertainty'])}</b> of the largest force or better{_without_grid(bake)}.")
     if e["direction_rms"] is None:
         said = (f"The body's symmetry makes every direction of the one that was solved, at {quantity(o['speed'], 'm/s')}. "
-                f"Its mean drag is known to <b>{_percent(e['uncertainty'])}</b>, not counting the grid.")
+                f"Its mean drag is known to <b>{_percent(e['uncertainty'])}</b>{_without_grid(bake)}.")
     return f"""<header>
 <p class="over">Force of water on rigid objects</p>
 <h1>{escape(Path(bake.json['mesh']).name)}: the map</h1>
@@ -119,6 +119,13 @@ def _head(bake: Bake) -> str:
 {facts(values)}
 {''.join(f'<p class="note">{escape(note)}</p>' for note in notes)}
 </header>"""
+
+
+def _without_grid(bake: Bake) -> str:
+    unknown = sum(flow["uncertainty_parts"]["grid"] is None for flow in bake.base)
+    if unknown == 0:
+        return ""
+    return ", not counting the grid" + ("" if unknown == len(bake.base) else f" of {plural(unknown, 'flow')}")
 
 
 def _solving(bake: Bake) -> float:
@@ -136,8 +143,9 @@ def _verdicts(bake: Bake) -> str:
             ("Added mass, estimated", _percent(e["added_mass"]) + (
                 " of the diagonal about the centroid (docs/added-mass.md)" if e["added_mass"] is not None else
                 " (left out)"))]
-    worst = max(bake.base, key=lambda flow: flow["uncertainty"])
-    rest.append(("Least certain flow", f"{_name(bake, worst)}: {_uncertainty(worst)}"))
+    worst = max(bake.base, key=lambda flow: flow["uncertainty"] * _drag(flow))
+    rest.append(("Least certain flow", f"{_name(bake, worst)}: {_uncertainty(worst)} of its drag, "
+                 f"{_percent(worst['uncertainty'] * _drag(worst) / bake.largest_force)} of the largest force"))
     far = max(bake.base, key=lambda flow: flow["left_out"] or 0.0)
     if far["left_out"] is not None:
         rest.append(("Worst predicted flow", f"{_name(bake, far)}: off by {_percent(far['left_out'])}, "
@@ -153,6 +161,16 @@ def _name(bake: Bake, flow: dict) -> str:
         return f"spin about {vector(flow['direction'])}"
     speed = "" if flow["speed"] == bake.options["speed"] else f" at {quantity(flow['speed'], 'm/s')}"
     return f"towards {vector(flow['direction'])}{speed}"
+
+
+def _drag(flow: dict) -> float:
+    """N."""
+    return abs(sum(f * d for f, d in zip(flow["force_mean"], flow["direction"])))
+
+
+def _in_all(flow: dict) -> str:
+    least = "≥ " if flow["uncertainty_parts"]["grid"] is None else ""
+    return least + _percent(flow["uncertainty"])
 
 
 def _uncertainty(flow: dict) -> str:
@@ -231,17 +249,18 @@ def periods(flow: dict) -> float:
 
 
 def _flows(bake: Bake) -> str:
-    columns = ["", "towards", "speed", "drag coeff.", "Strouhal", "uncertain", "statistics", "far field", "left out",
-               "samples", "10⁶ cells", "time, s"]
+    columns = ["", "towards", "speed", "drag coeff.", "Strouhal", "uncertain", "grid", "statistics", "far field",
+               "left out", "samples", "10⁶ cells", "time, s"]
     rows = []
     for at, flow in enumerate(bake.flows):
         parts, spin = flow["uncertainty_parts"], flow["kind"] == "spin"
         rows.append([number(at), ("spin about " if spin else "") + vector(flow["direction"]),
                      quantity(flow["speed"], "rad/s" if spin else "m/s"),
                      "–" if flow["cd"] is None else number(flow["cd"]),
-                     number(flow["strouhal"]) if flow["strouhal"] else "–", _percent(flow["uncertainty"]),
-                     _percent(parts["statistics"]), _percent(parts["blockage"]), _percent(flow["left_out"]),
-                     number(flow["samples"]), number(flow["cells"] / 1e6), number(flow["seconds"])])
+                     number(flow["strouhal"]) if flow["strouhal"] else "–", _in_all(flow),
+                     _percent(parts["grid"]), _percent(parts["statistics"]), _percent(parts["blockage"]),
+                     _percent(flow["left_out"]), number(flow["samples"]), number(flow["cells"] / 1e6),
+                     number(flow["seconds"])])
     if len({row[2] for row in rows}) == 1:
         for row in [columns, *rows]:
             del row[2]
@@ -284,9 +303,9 @@ def _strips(bake: Bake) -> str:
         flow = bake.flows[at]
         said = [f"<b>{at}</b> {escape(_name(bake, flow))}"]
         if flow["cd"] is not None:
-            said.append(f"drag coefficient {number(flow['cd'])} ± {_percent(flow['uncertainty'])}")
+            said.append(f"drag coefficient {number(flow['cd'])} ± {_in_all(flow)} in all")
         elif flow["torque_coefficient"] is not None:
-            said.append(f"torque coefficient {number(flow['torque_coefficient'])} ± {_percent(flow['uncertainty'])}")
+            said.append(f"torque coefficient {number(flow['torque_coefficient'])} ± {_in_all(flow)} in all")
         if flow["strouhal"]:
             said.append(f"{number(periods(flow), 2)} periods of shedding")
         if flow["left_out"] is not None:

@@ -29,8 +29,9 @@ def uncertainty(parts: dict, total: float) -> str:
     axes.barh(names, values, color=[INK] + [COLOURS["drag"]] * len(parts), height=0.62)
     for at, (name, value) in enumerate(zip(names, values)):
         known = name == "total" or parts[name] is not None
-        axes.annotate(f"{value:.2g} %" if known else "not measured", (value, at), xytext=(4, 0),
-                      textcoords="offset points", va="center", color=INK if known else QUIET)
+        text = f"{value:.0f} %" if value >= 99.5 else f"{value:.2g} %"
+        axes.annotate(text if known else "not measured", (value, at), xytext=(4, 0), textcoords="offset points",
+                      va="center", color=INK if known else QUIET)
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.set(xlabel="one standard error as a share of the mean, %", xlim=(0, 1.18 * max(*values, 1e-3)))
@@ -50,7 +51,9 @@ def series(flow: Flow) -> str:
         axes.axhline(mean, color=INK, linewidth=0.9, linestyle=(0, (4, 2)), label="mean")
         if name != "lift":
             off = abs(mean) * flow.json["uncertainty"]
-            axes.axhspan(mean - off, mean + off, color=COLOURS[name], alpha=0.14, linewidth=0, label="± uncertainty")
+            whole = flow.json["uncertainty_parts"]["grid"] is not None
+            axes.axhspan(mean - off, mean + off, color=COLOURS[name], alpha=0.14, linewidth=0,
+                         label="± uncertainty" if whole else "± uncertainty, without the grid's")
             legend_above(axes)
         axes.set(title="Torque about the axis, N m" if name == "torque" else f"{name.capitalize()} coefficient")
         axes.margins(x=0.01)
@@ -139,7 +142,10 @@ def slices(flow: Flow, slice_: Slice) -> str:
              "Pressure coefficient")):
         image = draw_slice(axes, slice_, values, colours, norm)
         axes.set(xlim=window[:2], ylim=window[2:], title=title, ylabel=f"{'xyz'[slice_.other]}, m")
-        figure.colorbar(image, ax=axes, shrink=0.9, pad=0.015, extend="max" if values is slice_.speed else "both")
+        bar = figure.colorbar(image, ax=axes, shrink=0.9, pad=0.015, extend="max" if values is slice_.speed else "both")
+        if isinstance(norm, TwoSlopeNorm):  # of its own it marks nothing above the stream's speed
+            bar.set_ticks([0, 0.25, 0.5, 0.75, 1, round((1 + norm.vmax) / 2, 2), round(norm.vmax, 2)])
+            bar.ax.yaxis.set_major_formatter(lambda at, _: f"{at:g}")
     pair[1].set_xlabel("x, along the stream, m")
     return png(figure, 150)
 

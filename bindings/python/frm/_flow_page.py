@@ -47,8 +47,10 @@ def _answer(flow: Flow) -> str:
     json, off = flow.json, flow.json["uncertainty"]
     name, value = (("torque", json["torque_coefficient"]) if flow.spin_alone else ("drag", json["cd"]))
     least, most = sorted((value * (1 - off), value * (1 + off)))
-    text = (f"The {name} coefficient is <b>{number(value, 4)} ± {_percent(off)}</b> ({number(least, 4)} to "
-            f"{number(most, 4)}) at a Reynolds number of {number(json['reynolds'])}")
+    grid = json["uncertainty_parts"]["grid"] is not None
+    known = f" ({number(least, 4)} to {number(most, 4)})" if grid else ", or more: the grid's part is not measured,"
+    text = (f"The {name} coefficient is <b>{number(value, 4)} ± {_percent(off)}</b>{known} at a Reynolds "
+            f"number of {number(json['reynolds'])}")
     if json["strouhal"]:
         text += f"; the wake sheds at a Strouhal number of <b>{number(json['strouhal'])}</b>"
         if _periods(flow) < _FEW_PERIODS:
@@ -61,7 +63,8 @@ def _head(flow: Flow) -> str:
     values = [("Drag coefficient", number(json["cd"], 4))] if not flow.spin_alone else []
     if json.get("torque_coefficient") is not None:
         values.append(("Torque coefficient", number(json["torque_coefficient"])))
-    values.append(("Uncertainty", _percent(json["uncertainty"])))
+    at_least = "" if json["uncertainty_parts"]["grid"] is not None else "at least "
+    values.append(("Uncertainty", at_least + _percent(json["uncertainty"])))
     if json["strouhal"]:
         values.append(("Strouhal number", number(json["strouhal"])))
     values += [("Reynolds number", number(json["reynolds"])), ("Cells", number(float(f"{json['cells']:.3g}"))),

@@ -224,8 +224,7 @@ def _map(index: int, info: MapInfo, provenance: dict, count: int) -> str:
         elif name == "quantisation_error":
             text = f"{number(100 * value)} % of the peak force"
         elif name in ("direction_error_rms", "direction_error_worst", "uncertainty"):
-            of = "the mean drag" if name == "uncertainty" else "the peak force"
-            text = f"{number(100 * value)} % of {of}" if value > 0 else "not known"
+            text = f"{number(100 * value)} % of the peak force" if value > 0 else "not known"
         elif name.startswith("has_"):
             text = "yes" if value else "no"
         elif isinstance(value, (int, float)):
@@ -234,7 +233,7 @@ def _map(index: int, info: MapInfo, provenance: dict, count: int) -> str:
             text = vector(value, unit)
         rows.append((label, text))
     solved = info.reynolds_solved / info.reynolds if info.reynolds else 1.0
-    caption = (f"{plural(info.sources, 'source')} on {quantity(info.area, 'm²')} of surface, baked in "
+    caption = (f"{plural(info.sources, 'source')} on {quantity(info.area, 'm²')} of surface, known in "
                f"{plural(info.directions, 'direction')} at {quantity(info.base_speed, 'm/s')}; the series "
                f"repeat every {quantity(info.period, 's')} of map time.")
     if solved < 0.999:
