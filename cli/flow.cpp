@@ -315,7 +315,7 @@ void add_effort(CLI::App& command, Options& o) {
     command
         .add_option("--confidence", o.confidence,
                     "stop once the standard error of the mean drag over time is below so many\n"
-                    "per cent of it, such as 1 (default: run for --duration)")
+                    "per cent of it, such as 3 (default: run for --duration)")
         ->check(number_within(0.1, 100))
         ->type_name("PERCENT");
     command

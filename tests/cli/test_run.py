@@ -78,6 +78,7 @@ def test_a_map_on_the_command_line_wins(good, refused, scene, map_path, tmp_path
     refused(1, "--map|box", "run", path, "--map", "box")
     refused(1, "nowhere.frm", "run", scene(), "--map", "box=nowhere.frm")
     refused(1, "scene.json", "run", path, "--map", f"box={path}")
+    refused(1, "--map foo=nowhere.frm|no body|scene.json", "run", scene(), "--map", "foo=nowhere.frm")
 
 
 @pytest.mark.parametrize("words, changes", [

@@ -122,7 +122,7 @@ def _head(bake: Bake) -> str:
 
 
 def _without_grid(bake: Bake) -> str:
-    unknown = sum(flow["uncertainty_parts"]["grid"] is None for flow in bake.base)
+    unknown = sum(not _has_grid(flow) for flow in bake.base)
     if unknown == 0:
         return ""
     return ", not counting the grid" + ("" if unknown == len(bake.base) else f" of {plural(unknown, 'flow')}")
@@ -143,9 +143,9 @@ def _verdicts(bake: Bake) -> str:
             ("Added mass, estimated", _percent(e["added_mass"]) + (
                 " of the diagonal about the centroid (docs/added-mass.md)" if e["added_mass"] is not None else
                 " (left out)"))]
-    worst = max(bake.base, key=lambda flow: flow["uncertainty"] * _drag(flow))
+    worst = max(bake.base, key=lambda flow: flow["uncertainty"] * _drag(bake, flow))
     rest.append(("Least certain flow", f"{_name(bake, worst)}: {_uncertainty(worst)} of its drag, "
-                 f"{_percent(worst['uncertainty'] * _drag(worst) / bake.largest_force)} of the largest force"))
+                 f"{_percent(worst['uncertainty'] * _drag(bake, worst) / bake.largest_force)} of the largest force"))
     far = max(bake.base, key=lambda flow: flow["left_out"] or 0.0)
     if far["left_out"] is not None:
         rest.append(("Worst predicted flow", f"{_name(bake, far)}: off by {_percent(far['left_out'])}, "
@@ -163,14 +163,17 @@ def _name(bake: Bake, flow: dict) -> str:
     return f"towards {vector(flow['direction'])}{speed}"
 
 
-def _drag(flow: dict) -> float:
-    """N."""
-    return abs(sum(f * d for f, d in zip(flow["force_mean"], flow["direction"])))
+def _drag(bake: Bake, flow: dict) -> float:
+    """Of a stream's flow, N."""
+    return 0.5 * bake.options["density"] * flow["speed"] ** 2 * flow["area"] * abs(flow["cd"])
+
+
+def _has_grid(flow: dict) -> bool:
+    return flow["uncertainty_parts"]["grid"] is not None
 
 
 def _in_all(flow: dict) -> str:
-    least = "≥ " if flow["uncertainty_parts"]["grid"] is None else ""
-    return least + _percent(flow["uncertainty"])
+    return _percent(flow["uncertainty"]) + (" in all" if _has_grid(flow) else " or more")
 
 
 def _uncertainty(flow: dict) -> str:
@@ -257,7 +260,8 @@ def _flows(bake: Bake) -> str:
         rows.append([number(at), ("spin about " if spin else "") + vector(flow["direction"]),
                      quantity(flow["speed"], "rad/s" if spin else "m/s"),
                      "–" if flow["cd"] is None else number(flow["cd"]),
-                     number(flow["strouhal"]) if flow["strouhal"] else "–", _in_all(flow),
+                     number(flow["strouhal"]) if flow["strouhal"] else "–",
+                     ("" if _has_grid(flow) else "≥ ") + _percent(flow["uncertainty"]),
                      _percent(parts["grid"]), _percent(parts["statistics"]), _percent(parts["blockage"]),
                      _percent(flow["left_out"]), number(flow["samples"]), number(flow["cells"] / 1e6),
                      number(flow["seconds"])])
@@ -303,9 +307,9 @@ def _strips(bake: Bake) -> str:
         flow = bake.flows[at]
         said = [f"<b>{at}</b> {escape(_name(bake, flow))}"]
         if flow["cd"] is not None:
-            said.append(f"drag coefficient {number(flow['cd'])} ± {_in_all(flow)} in all")
+            said.append(f"drag coefficient {number(flow['cd'])} ± {_in_all(flow)}")
         elif flow["torque_coefficient"] is not None:
-            said.append(f"torque coefficient {number(flow['torque_coefficient'])} ± {_in_all(flow)} in all")
+            said.append(f"torque coefficient {number(flow['torque_coefficient'])} ± {_in_all(flow)}")
         if flow["strouhal"]:
             said.append(f"{number(periods(flow), 2)} periods of shedding")
         if flow["left_out"] is not None:

@@ -49,11 +49,13 @@ code { font: .88em ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace;
 footer { margin-top: 3rem; padding-top: .8rem; border-top: 1px solid var(--rule); color: var(--quiet);
   font-size: .85rem; }
 @media (max-width: 40rem) { main { padding-top: 1.3rem; }
-  .wide img[src^="data:image/svg"] { min-width: 34rem; }
+  .wide img[src] { min-width: 34rem; }
   .key img[src] { min-width: 0; }
   .two { grid-template-columns: 1fr; } }
 @media print { body { font-size: 10pt; } main { max-width: none; padding: 0; }
-  h2 { break-after: avoid; margin-top: 1.4rem; }
+  h2, h3 { break-after: avoid; } h2 { margin-top: 1.4rem; } h2 + p { break-after: avoid; }
+  .wide { overflow: visible; }
+  .many th, .many td, .flows .many th, .flows .many td { font-size: 7pt; padding-right: .4rem; }
   .frames { grid-template-columns: repeat(3, 1fr); } .two { grid-template-columns: 1fr 1fr; }
   tr { break-inside: avoid; } @page { margin: 16mm; } }
 """
