@@ -169,7 +169,7 @@ def test_the_slice_ends_where_the_grid_does(tmp_path):
     write(tmp_path)
     bake = _bake.read(tmp_path)
     slice_ = bake.flow(bake.flows[0]).slices[0]
-    assert slice_.speed.shape == (21, 40) and slice_.body == pytest.approx([-0.5, -0.4, -0.05, 0.05])
+    assert slice_.speed.shape == (21, 40) and slice_.body == pytest.approx([-0.1, 0.1, -0.1, 0.1])  # of the mesh
 
 
 def test_neighbours_are_in_step_or_not(tmp_path):

@@ -112,9 +112,10 @@ class Bake:
             water = np.isfinite(speed)
             speed = speed[:max(np.flatnonzero(water.any(1)), default=0) + 1,
                           :max(np.flatnonzero(water.any(0)), default=0) + 1]
+            seen = self.surface("vertices") @ np.array([one["axes"][0], one["axes"][3 - normal]]).T
             slices.append(Slice(normal, low[normal], low[0] + spacing * np.arange(speed.shape[1]),
                                 low[3 - normal] + spacing * np.arange(speed.shape[0]), speed,
-                                np.full(speed.shape, np.nan)))
+                                np.full(speed.shape, np.nan), np.stack([seen.min(0), seen.max(0)]).T.ravel()))
         return Flow({**one, "report": report}, one["interval"] * np.arange(len(force)), force, torque, slices)
 
 

@@ -25,6 +25,7 @@ class Slice:
     across: np.ndarray  # of the rows, m
     speed: np.ndarray  # [row][column], share of the stream's; NaN in the body
     pressure: np.ndarray  # coefficient
+    extent: np.ndarray | None = None  # of the body's mesh, as `body`, where it is known
 
     @property
     def other(self) -> int:
@@ -33,7 +34,10 @@ class Slice:
 
     @cached_property
     def body(self) -> np.ndarray:
-        """Its extent as (x low, x high, across low, across high); the middle of the slice where it is not cut."""
+        """Its extent as (x low, x high, across low, across high); the middle of the slice where it is not cut. Cells alone
+        do not tell that of a body thinner than they are."""
+        if self.extent is not None:
+            return self.extent
         rows, columns = np.nonzero(np.isnan(self.speed))
         if not len(rows):
             rows, columns = np.array([len(self.across) // 2]), np.array([len(self.x) // 2])
