@@ -270,7 +270,8 @@ def _flows(bake: Bake) -> str:
             del row[2]
     few = [flow for flow in bake.flows if 0 < periods(flow) < _FEW_PERIODS]
     shed = [flow for flow in bake.flows if flow["strouhal"]]
-    text = (f"{plural(len(bake.flows), 'flow')} took {_time(_solving(bake))}. Drag coefficients are on the area across "
+    at_a_time = ", several at a time" if _solving(bake) > 1.2 * bake.json["seconds"] else ""
+    text = (f"{plural(len(bake.flows), 'flow')} took {_time(_solving(bake))}{at_a_time}. Drag coefficients are on the area across "
             "the stream; Strouhal numbers on the reference length of "
             f"{quantity(bake.map['reference_length'], 'm')}, where a frequency stands out")
     if shed:
