@@ -11,6 +11,7 @@
 #include "cli/bake_report.h"
 #include "cli/command.h"
 #include "cli/file.h"
+#include "cli/frm_object.h"
 #include "core/map/codec.h"
 
 namespace frm::cli {
@@ -25,11 +26,6 @@ bool begins_with(const std::string& path, const Byte (&magic)[size]) {
     char head[size] = {};
     file.read(head, size);
     return file.gcount() == 0 || (file.gcount() == size && std::memcmp(head, magic, size) == 0);
-}
-
-/// Null where it is not known.
-nlohmann::ordered_json known(double value) {
-    return value > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 /// The notes and what is on standard output.
@@ -59,10 +55,10 @@ void say(const bake::BakePlan& plan, const Map& map, const bake::BakeReport& rep
                                  {"reynolds", map.facts.reynolds},
                                  {"reynolds_solved", map.facts.reynolds_solved},
                                  {"uncertainty", worst},
-                                 {"direction_error_rms", known(between.rms)},
-                                 {"direction_error_worst", known(between.worst)},
+                                 {"direction_error_rms", if_known(between.rms)},
+                                 {"direction_error_worst", if_known(between.worst)},
                                  {"quantisation_error", map.facts.quantisation_error},
-                                 {"mlups", known(mlups)},
+                                 {"mlups", if_known(mlups)},
                                  {"seconds", run.seconds}};
         std::printf("%s\n", j.dump(2).c_str());
         return;

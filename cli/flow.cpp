@@ -116,8 +116,8 @@ void complete(Options& o, const bake::Surface& surface) {
     if (!o.has_direction) c.direction = direction_for_spin(surface, c.spin);
     if (!o.has_section) return;
     c.section = true;
-    c.section_origin = o.has_section_point ? Vec3d(o.section_point[0], o.section_point[1], o.section_point[2])
-                                           : bake::measure(surface).centroid;
+    c.section_origin =
+        o.has_section_point ? Vec3d(o.section_point[0], o.section_point[1], o.section_point[2]) : c.spin_centre;
     c.section_normal =
         o.automatic_section ? longest_across(surface, c.direction) : Vec3d(o.section[0], o.section[1], o.section[2]);
     if (std::fabs(dot(c.section_normal, c.direction)) > 1e-6)
@@ -227,8 +227,7 @@ void run(Options& o) {
     std::vector<std::string> notes;
     const bake::Surface surface =
         load_or_show(o.mesh, o.out, [&] { return bake::load_surface(o.mesh, notes, o.scale); });
-    const std::string size = note_on_size(bake::longest_side(bake::measure(surface)));
-    if (o.scale == 1 && !size.empty()) notes.push_back(size);
+    note_size(bake::measure(surface), o.scale, notes);
     complete(o, surface);
     const bake::FlowPlan plan = in_options([&] { return bake::plan_flow(surface, o.flow); });
     const std::unique_ptr<FlowReport> report =

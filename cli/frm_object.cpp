@@ -70,10 +70,9 @@ nlohmann::ordered_json json_of(const frm_map_info& info) {
     j["reynolds_solved"] = info.reynolds_solved;
     j["reference_length"] = info.reference_length;
     j["quantisation_error"] = info.quantisation_error;
-    const auto known = [](float v) { return v > 0 ? nlohmann::ordered_json(v) : nlohmann::ordered_json(); };  // or null
-    j["direction_error_rms"] = known(info.direction_error_rms);
-    j["direction_error_worst"] = known(info.direction_error_worst);
-    j["uncertainty"] = known(info.uncertainty);
+    j["direction_error_rms"] = if_known(info.direction_error_rms);
+    j["direction_error_worst"] = if_known(info.direction_error_worst);
+    j["uncertainty"] = if_known(info.uncertainty);
     j["area"] = info.area;
     j["volume"] = info.volume;
     j["centroid"] = json_of(info.centroid);

@@ -30,5 +30,9 @@ private:
 
 nlohmann::ordered_json json_of(const frm_vec3& v);
 nlohmann::ordered_json json_of(const frm_map_info& info);
+/// Null for 0, by which an error or a rate is not known.
+inline nlohmann::ordered_json if_known(double v) {
+    return v > 0 ? nlohmann::ordered_json(v) : nlohmann::ordered_json();
+}
 
 }  // namespace frm::cli

@@ -160,8 +160,7 @@ void run(const Options& o) {
         load_or_show(o.mesh, o.out, [&] { return bake::repair(bake::load_gltf(o.mesh, o.scale), o.mesh); });
     if (!o.out.empty()) write_file(o.out, bake::write_glb({{"surface", {0.5, 0.5, 0.5, 1}, &repaired.surface}}, "frm"));
     const bake::SurfaceProperties shape = bake::measure(repaired.surface);
-    if (const std::string note = note_on_size(bake::longest_side(shape)); o.scale == 1 && !note.empty())
-        repaired.notes.push_back(note);
+    note_size(shape, o.scale, repaired.notes);
     const bake::Thickness thickness = bake::measure_thickness(repaired.surface);
     const bake::Symmetry symmetry = bake::find_symmetry(repaired.surface);
     const std::vector<Choice> choices = o.regions ? choose(repaired.surface) : std::vector<Choice>{};

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <iostream>
-#include <vector>
 
 #include "bake/mesh/gltf.h"
 #include "bake/mesh/units.h"
@@ -53,9 +52,11 @@ void add_scale(CLI::App& command, double& scale) {
         ->type_name("F");
 }
 
-std::string note_on_size(double extent) {
-    if (bake::plausible_size(extent)) return "";
-    return "the mesh is " + metres(extent) + " long, as glTF counts in metres; if it was drawn " + remedies(extent);
+void note_size(const bake::SurfaceProperties& shape, double scale, std::vector<std::string>& notes) {
+    const double extent = bake::longest_side(shape);
+    if (scale != 1 || bake::plausible_size(extent)) return;
+    notes.push_back("the mesh is " + metres(extent) + " long, as glTF counts in metres; if it was drawn " +
+                    remedies(extent));
 }
 
 void settle_size(const std::string& mesh, double& scale) {

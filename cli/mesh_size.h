@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "bake/mesh/surface.h"
 #include "cli/command.h"
 
 namespace frm::cli {
@@ -10,8 +12,8 @@ namespace frm::cli {
 /// --scale F.
 void add_scale(CLI::App& command, double& scale);
 
-/// Of a mesh that is not plausible in metres, what a command that does not ask says of it; else nothing.
-std::string note_on_size(double extent);
+/// For a command that does not ask: a note on a mesh that is not plausible in metres and that nobody scaled.
+void note_size(const bake::SurfaceProperties& shape, double scale, std::vector<std::string>& notes);
 
 /// Reads the mesh's size. One that is not plausible in metres gets a question on a terminal, whose answer may be a unit for
 /// `scale`; else a Failure that says what to add to the command.

@@ -22,13 +22,19 @@ std::uint64_t limit_of_container() {
     return file >> bytes ? bytes : 0;
 }
 
-}  // namespace
-
-std::uint64_t usable_memory() {
+std::uint64_t measure_usable() {
     const std::uint64_t machine = physical(), container = limit_of_container();
     if (machine == 0 && container == 0) return where_unknown;
     const std::uint64_t all = machine == 0 ? container : container == 0 ? machine : std::min(machine, container);
     return all / 4 * 3;
+}
+
+}  // namespace
+
+// Asked for with every flow that is planned.
+std::uint64_t usable_memory() {
+    static const std::uint64_t bytes = measure_usable();
+    return bytes;
 }
 
 }  // namespace frm::bake

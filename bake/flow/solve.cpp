@@ -245,9 +245,7 @@ private:
         const double coefficient = s.recording ? mean(measure_) : shown_;
         s.drag_coefficient = spins_alone() ? torque_coefficient(coefficient) : drag_coefficient(coefficient);
         s.drag_coefficient *= free_stream(s.drag_coefficient);
-        if (recorded_lengths() >= 1 && coefficient != 0) {
-            s.statistics = standard_error(measure_) / std::abs(coefficient);
-        }
+        if (recorded_lengths() >= 1 && coefficient != 0) s.statistics = relative_error();
         const double elapsed = seconds_since(begin_);
         s.seconds_left = s.share > 0.01 ? elapsed * (1 - s.share) / s.share : -1;
         if (case_.seconds > 0) {

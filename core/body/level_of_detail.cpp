@@ -128,20 +128,20 @@ bool is_dear(const Body& body, std::size_t lookups) {
 
 const Level* choose_level(Body& body, const LookupMotion& motion) {
     const Map& map = *body.def.map;
-    const float time = 1000 * body.budget.time, newtons = body.budget.error;
+    const float newtons = body.budget.error;
     const LevelMotion m{size(motion.velocity) * motion.per_base_speed, size(motion.rotation) * motion.per_base_speed,
                         motion.pressure, motion.friction};
     const Level* chosen = nullptr;
     for (const Level& level : map.detail.level) {
         if (motion.spinning && !body.all_wet()) break;  // what spin adds to a group is for one wet ratio
-        if (chosen && time > 0 && nanoseconds(level.groups) > time) break;
+        if (chosen && is_dear(body, level.groups)) break;
         chosen = &level;
         body.detail = {level.groups, level.error(m, map.tables.reach), false};
         if (!body.all_wet()) body.detail.error += wetness_error(body, level, m);
         body.detail.over_budget = is_dear(body, level.groups);
         if (newtons > 0 && body.detail.error <= newtons) return chosen;
     }
-    if (!chosen || !(time > 0) || nanoseconds(map.sources.size()) <= time) {
+    if (!chosen || !is_dear(body, map.sources.size())) {
         body.detail = {};
         return nullptr;
     }

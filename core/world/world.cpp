@@ -228,7 +228,7 @@ void World::place_body(Body& body, float dt, const WaveTime& waves) {
     const Vec3f centre = body.rotation.to_world(body.centre());
     const GridOrigin at = water_->origin_at(body.def.pose.position.x + static_cast<double>(centre.x),
                                             body.def.pose.position.y + static_cast<double>(centre.y));
-    // Or nothing of its window lies over the water: it is as one too deep to be seen there.
+    // A body whose window lies wholly beside the water is as one too deep to be seen there.
     const std::int32_t reach = body.footprint->size();
     const Rect near{at.i - reach, at.j - reach, at.i + reach, at.j + reach};
     const bool deep = spread && def_.skip & skip_deep_bodies &&
@@ -285,7 +285,9 @@ bool World::tick(float dt) {
     }
 
     bool diverged = false;
-    skipped_ = {0, 0, 0, 0, 0, 0, skipped_.water_waits + waits};
+    const std::uint64_t waited = skipped_.water_waits + waits;
+    skipped_ = {};
+    skipped_.water_waits = waited;
     for (const auto& body : bodies_) place_body(*body, dt, waves);
     for (const auto& body : bodies_) {
         tick_body(*body, dt, time_each, waves);

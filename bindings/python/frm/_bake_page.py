@@ -9,6 +9,7 @@ import numpy as np
 from . import _bake_figures
 from ._bake import Bake
 from ._base import version
+from ._flow import knows_grid
 from ._html import document, facts, figure, many, table
 from ._words import number, plural, quantity, vector
 
@@ -122,7 +123,7 @@ def _head(bake: Bake) -> str:
 
 
 def _without_grid(bake: Bake) -> str:
-    unknown = sum(not _has_grid(flow) for flow in bake.base)
+    unknown = sum(not knows_grid(flow) for flow in bake.base)
     if unknown == 0:
         return ""
     return ", not counting the grid" + ("" if unknown == len(bake.base) else f" of {plural(unknown, 'flow')}")
@@ -168,12 +169,8 @@ def _drag(bake: Bake, flow: dict) -> float:
     return 0.5 * bake.options["density"] * flow["speed"] ** 2 * flow["area"] * abs(flow["cd"])
 
 
-def _has_grid(flow: dict) -> bool:
-    return flow["uncertainty_parts"]["grid"] is not None
-
-
 def _in_all(flow: dict) -> str:
-    return _percent(flow["uncertainty"]) + (" in all" if _has_grid(flow) else " or more")
+    return _percent(flow["uncertainty"]) + (" in all" if knows_grid(flow) else " or more")
 
 
 def _uncertainty(flow: dict) -> str:
@@ -261,7 +258,7 @@ def _flows(bake: Bake) -> str:
                      quantity(flow["speed"], "rad/s" if spin else "m/s"),
                      "–" if flow["cd"] is None else number(flow["cd"]),
                      number(flow["strouhal"]) if flow["strouhal"] else "–",
-                     ("" if _has_grid(flow) else "≥ ") + _percent(flow["uncertainty"]),
+                     ("" if knows_grid(flow) else "≥ ") + _percent(flow["uncertainty"]),
                      _percent(parts["grid"]), _percent(parts["statistics"]), _percent(parts["blockage"]),
                      _percent(flow["left_out"]), number(flow["samples"]), number(flow["cells"] / 1e6),
                      number(flow["seconds"])])
@@ -271,8 +268,8 @@ def _flows(bake: Bake) -> str:
     few = [flow for flow in bake.flows if 0 < periods(flow) < _FEW_PERIODS]
     shed = [flow for flow in bake.flows if flow["strouhal"]]
     at_a_time = ", several at a time" if _solving(bake) > 1.2 * bake.json["seconds"] else ""
-    text = (f"{plural(len(bake.flows), 'flow')} took {_time(_solving(bake))}{at_a_time}. Drag coefficients are on the area across "
-            "the stream; Strouhal numbers on the reference length of "
+    text = (f"{plural(len(bake.flows), 'flow')} took {_time(_solving(bake))}{at_a_time}. Drag coefficients are on the "
+            "area across the stream; Strouhal numbers on the reference length of "
             f"{quantity(bake.map['reference_length'], 'm')}, where a frequency stands out")
     if shed:
         text += f" ({number(len(shed))} of {number(len(bake.flows))})"

@@ -17,6 +17,11 @@ _NEEDED_REPORT = ("mesh", "direction", "speed", "density", "spin", "axes", "lift
                   "fastest", "resolution", "duration")
 
 
+def knows_grid(one: dict) -> bool:
+    """Whether the grid's part of a flow's uncertainty was measured: without it the flow is less certain than it says."""
+    return one["uncertainty_parts"]["grid"] is not None
+
+
 @dataclass(frozen=True)
 class Slice:
     normal: int  # axis of the stream's frame
@@ -34,8 +39,8 @@ class Slice:
 
     @cached_property
     def body(self) -> np.ndarray:
-        """Its extent as (x low, x high, across low, across high); the middle of the slice where it is not cut. Cells alone
-        do not tell that of a body thinner than they are."""
+        """Its extent as (x low, x high, across low, across high); the middle of the slice where it is not cut. Cells
+        alone do not tell that of a body thinner than they are."""
         if self.extent is not None:
             return self.extent
         rows, columns = np.nonzero(np.isnan(self.speed))

@@ -6,7 +6,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, TwoSlopeNorm
 from matplotlib.patches import Rectangle
 
 from ._drawing import AXIS_COLOURS, INK, QUIET, canvas, curve, legend_above, mark, png, styled, svg
-from ._flow import Flow, Slice
+from ._flow import Flow, Slice, knows_grid
 
 COLOURS = {"drag": AXIS_COLOURS["z"], "lift": AXIS_COLOURS["x"], "torque": AXIS_COLOURS["y"]}
 BODY = "#4a5560"
@@ -51,9 +51,8 @@ def series(flow: Flow) -> str:
         axes.axhline(mean, color=INK, linewidth=0.9, linestyle=(0, (4, 2)), label="mean")
         if name != "lift":
             off = abs(mean) * flow.json["uncertainty"]
-            whole = flow.json["uncertainty_parts"]["grid"] is not None
             axes.axhspan(mean - off, mean + off, color=COLOURS[name], alpha=0.14, linewidth=0,
-                         label="± uncertainty" if whole else "± uncertainty, without the grid's")
+                         label="± uncertainty" if knows_grid(flow.json) else "± uncertainty, without the grid's")
             legend_above(axes)
         axes.set(title="Torque about the axis, N m" if name == "torque" else f"{name.capitalize()} coefficient")
         axes.margins(x=0.01)

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _flow_figures
 from ._base import version
-from ._flow import Flow
+from ._flow import Flow, knows_grid
 from ._html import document, facts, figure, many, table
 from ._words import number, plural, quantity, vector
 
@@ -47,8 +47,7 @@ def _answer(flow: Flow) -> str:
     json, off = flow.json, flow.json["uncertainty"]
     name, value = (("torque", json["torque_coefficient"]) if flow.spin_alone else ("drag", json["cd"]))
     least, most = sorted((value * (1 - off), value * (1 + off)))
-    grid = json["uncertainty_parts"]["grid"] is not None
-    known = f" ({number(least, 4)} to {number(most, 4)})" if grid else ", or more: the grid's part is not measured,"
+    known = f" ({number(least, 4)} to {number(most, 4)})" if knows_grid(json) else ", or more: the grid's part is not measured,"
     text = (f"The {name} coefficient is <b>{number(value, 4)} ± {_percent(off)}</b>{known} at a Reynolds "
             f"number of {number(json['reynolds'])}")
     if json["strouhal"]:
@@ -63,7 +62,7 @@ def _head(flow: Flow) -> str:
     values = [("Drag coefficient", number(json["cd"], 4))] if not flow.spin_alone else []
     if json.get("torque_coefficient") is not None:
         values.append(("Torque coefficient", number(json["torque_coefficient"])))
-    at_least = "" if json["uncertainty_parts"]["grid"] is not None else "at least "
+    at_least = "" if knows_grid(json) else "at least "
     values.append(("Uncertainty", at_least + _percent(json["uncertainty"])))
     if json["strouhal"]:
         values.append(("Strouhal number", number(json["strouhal"])))
@@ -126,7 +125,7 @@ def _advice(flow: Flow) -> list[str]:
     else:
         advice.append(f"The far field is the largest part, {_percent(parts['blockage'])}; it is the solver's own, and "
                       "no option makes it smaller.")
-    if json["uncertainty_parts"]["grid"] is None:
+    if not knows_grid(json):
         advice.append("The error of the grid is not known, so the total says too little: " + (
             f"the run ended before the one on all cells had recorded, and all of this is of {resolution / 2:g} cells. "
             "Give it more time." if json.get("half_resolution") else
